@@ -1,5 +1,6 @@
 //! The object catalogue: every class of object, what it affords, what people call it and what it looks like.
 
+pub(crate) mod files;
 mod names;
 mod pack;
 pub mod table;
@@ -188,18 +189,6 @@ pub struct Catalog {
     layer: Layer,
 }
 
-#[derive(Deserialize)]
-struct ObjectFile {
-    #[serde(default, rename = "object")]
-    objects: Vec<ObjectClass>,
-}
-
-#[derive(Deserialize)]
-struct ModelFile {
-    #[serde(default, rename = "model")]
-    models: Vec<Model>,
-}
-
 /// Why a catalogue could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum CatalogError {
@@ -282,7 +271,7 @@ impl Catalog {
         let mut errors = Vec::new();
         let mut model_by_id: HashMap<String, (usize, &str)> = HashMap::new();
         let mut file_of_class: HashMap<String, &str> = HashMap::new();
-        for (file, model) in entries(models, &mut errors, |file: ModelFile| file.models) {
+        for (file, model) in files::models(models.iter().copied(), &mut errors, read) {
             match model_by_id.get(&model.id) {
                 Some((_, first)) => errors.push(twice(file, first, model.id)),
                 None => {
@@ -291,7 +280,7 @@ impl Catalog {
                 }
             }
         }
-        for (file, class) in entries(objects, &mut errors, |file: ObjectFile| file.objects) {
+        for (file, class) in files::objects(objects.iter().copied(), &mut errors, read) {
             if let Some(first) = file_of_class.get(&class.id) {
                 errors.push(twice(file, first, class.id));
                 continue;
@@ -470,22 +459,6 @@ impl RoomId {
         // No floor plan has a room that its catalogue lacks.
         catalog.rooms.get(self).map_or("room", |entry| entry.name.as_str())
     }
-}
-
-/// The entries of files that can be read, each with its file; why others cannot goes to `errors`.
-fn entries<'f, T: serde::de::DeserializeOwned, E>(
-    files: &[(&'f str, &str)],
-    errors: &mut Vec<CatalogError>,
-    of: impl Fn(T) -> Vec<E>,
-) -> Vec<(&'f str, E)> {
-    let mut all = Vec::new();
-    for (file, text) in files {
-        match read::<T>(file, text) {
-            Ok(read) => all.extend(of(read).into_iter().map(|entry| (*file, entry))),
-            Err(error) => errors.push(error),
-        }
-    }
-    all
 }
 
 fn twice(file: &str, first: &str, id: String) -> CatalogError {

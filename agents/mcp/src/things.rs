@@ -93,7 +93,7 @@ impl Things {
 
     fn several(&self, text: &str, objects: &[ObjectId], scene: &Known) -> String {
         let objects = objects.iter().filter_map(|id| scene.object(*id));
-        let mut fitting: Vec<(f32, &KnownObject)> = objects.map(|object| (distance_m(scene, object), object)).collect();
+        let mut fitting: Vec<(f32, &KnownObject)> = objects.map(|object| (scene.distance_m(object), object)).collect();
         fitting.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         let rest = fitting.len().saturating_sub(MOST_FITTING);
         let nearest = fitting.into_iter().take(MOST_FITTING);
@@ -116,12 +116,6 @@ fn bare(text: &str) -> String {
     let text = text.trim().to_lowercase();
     let bare = ARTICLES.iter().find_map(|article| text.strip_prefix(article)).map(str::to_owned);
     bare.unwrap_or(text)
-}
-
-/// How far a thing is from the body, m.
-fn distance_m(scene: &Known, object: &KnownObject) -> f32 {
-    let [dx, dy] = [0, 1].map(|axis| object.position_m[axis] - scene.robot.position_m[axis]);
-    dx.hypot(dy)
 }
 
 fn all(scene: &Known, is: impl Fn(&KnownObject) -> bool) -> Vec<ObjectId> {

@@ -1,13 +1,12 @@
 //! What no pack may have: paths out of its folder, numbers that are none, sizes that no office has.
 
-use serde::{Deserialize, de::DeserializeOwned};
+use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
 use super::{PackError, PackFile};
 use crate::{
-    catalog::{Catalog, ObjectClass},
+    catalog::{Catalog, ObjectClass, files},
     layout::Layout,
-    model::Model,
     nearest::did_you_mean,
 };
 
@@ -89,41 +88,23 @@ fn walk(file: &str, at: &str, value: &Value, errors: &mut Vec<PackError>) {
     }
 }
 
-#[derive(Deserialize)]
-struct ObjectFile {
-    #[serde(default, rename = "object")]
-    objects: Vec<ObjectClass>,
-}
-
-#[derive(Deserialize)]
-struct ModelFile {
-    #[serde(default, rename = "model")]
-    models: Vec<Model>,
-}
-
 /// Classes are of sizes that things have.
 pub(super) fn check_objects(files: &[(String, String)]) -> Vec<PackError> {
-    let (mut classes, mut errors) = (0, Vec::new());
-    for (file, text) in files {
-        let read = match read::<ObjectFile>(file, text) {
-            Ok(read) => read,
-            Err(error) => {
-                errors.push(error);
-                continue;
-            }
-        };
-        for class in read.objects {
-            classes += 1;
-            check_object(file, &class, &mut errors);
-            if classes > MOST_CLASSES {
-                let at = format!("object `{}`: id", class.id);
-                let remedy = format!("at most {MOST_CLASSES} in a pack");
-                errors.push(PackError::at(file, &at, "it is one class too many".to_owned(), &remedy));
-                return errors;
-            }
+    let mut errors = Vec::new();
+    for (count, (file, class)) in (1..).zip(files::objects(texts(files), &mut errors, read)) {
+        check_object(file, &class, &mut errors);
+        if count > MOST_CLASSES {
+            let at = format!("object `{}`: id", class.id);
+            let remedy = format!("at most {MOST_CLASSES} in a pack");
+            errors.push(PackError::at(file, &at, "it is one class too many".to_owned(), &remedy));
+            return errors;
         }
     }
     errors
+}
+
+fn texts(files: &[(String, String)]) -> impl Iterator<Item = (&str, &str)> {
+    files.iter().map(|(file, text)| (file.as_str(), text.as_str()))
 }
 
 fn check_object(file: &str, class: &ObjectClass, errors: &mut Vec<PackError>) {
@@ -151,22 +132,13 @@ fn check_object(file: &str, class: &ObjectClass, errors: &mut Vec<PackError>) {
 /// Models are of as many shapes as can be drawn.
 pub(super) fn check_models(files: &[(String, String)]) -> Vec<PackError> {
     let mut errors = Vec::new();
-    for (file, text) in files {
-        let read = match read::<ModelFile>(file, text) {
-            Ok(read) => read,
-            Err(error) => {
-                errors.push(error);
-                continue;
-            }
-        };
-        for model in read.models {
-            let counts = model.parts.iter().map(|part| part.repeat.as_ref().map_or(1, |repeat| repeat.count));
-            let shapes = counts.fold(0_u32, u32::saturating_add);
-            if shapes == 0 || shapes > MOST_SHAPES {
-                let at = format!("model `{}`: part", model.id);
-                let remedy = format!("from 1 to {MOST_SHAPES}, repeated ones counted each");
-                errors.push(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
-            }
+    for (file, model) in files::models(texts(files), &mut errors, read) {
+        let counts = model.parts.iter().map(|part| part.repeat.as_ref().map_or(1, |repeat| repeat.count));
+        let shapes = counts.fold(0_u32, u32::saturating_add);
+        if shapes == 0 || shapes > MOST_SHAPES {
+            let at = format!("model `{}`: part", model.id);
+            let remedy = format!("from 1 to {MOST_SHAPES}, repeated ones counted each");
+            errors.push(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
         }
     }
     errors

@@ -162,7 +162,8 @@ impl Known {
     }
 
     /// The horizontal distance from the robot, m.
-    pub(crate) fn distance_m(&self, object: &KnownObject) -> f32 {
+    #[must_use]
+    pub fn distance_m(&self, object: &KnownObject) -> f32 {
         floor::distance_m(self.robot.position_m, object.position_m)
     }
 

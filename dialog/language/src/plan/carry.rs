@@ -318,19 +318,22 @@ impl Planner<'_> {
         self.focus.origins.iter().find(|(taken, _)| *taken == object).map(|(_, origin)| *origin)
     }
 
-    /// How far to a thing, m; what is in another room is further than all here.
-    pub(crate) fn way_m(&self, object: &KnownObject) -> f32 {
-        let elsewhere = if object.room == self.scene.robot.room { 0.0 } else { 100.0 };
-        self.scene.distance_m(object) + elsewhere
-    }
-
     /// The nearest object of these classes: of the first class that is known at all in this room, then anywhere.
     pub(crate) fn nearest(&self, classes: &[cohabit_cdf::ClassId]) -> Option<ObjectId> {
-        let cost = |object: &KnownObject| self.way_m(object);
-        classes.iter().find_map(|class| {
-            let same = self.scene.objects.iter().filter(|object| object.class == *class);
-            same.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.id.cmp(&b.id))).map(|object| object.id)
-        })
+        let of_class = |class: &cohabit_cdf::ClassId| {
+            self.nearest_of(self.scene.objects.iter().filter(|object| object.class == *class))
+        };
+        classes.iter().find_map(of_class)
+    }
+
+    /// The nearest of these; what is in another room is further than all here.
+    pub(crate) fn nearest_of<'k>(&self, objects: impl Iterator<Item = &'k KnownObject>) -> Option<ObjectId> {
+        let way_m = |object: &KnownObject| {
+            let elsewhere = if object.room == self.scene.robot.room { 0.0 } else { 100.0 };
+            self.scene.distance_m(object) + elsewhere
+        };
+        let nearest = objects.min_by(|a, b| way_m(a).total_cmp(&way_m(b)).then(a.id.cmp(&b.id)));
+        nearest.map(|object| object.id)
     }
 
     pub(crate) fn add_throw(&mut self, settled: &Settled) -> Result<(), Fault> {

@@ -360,8 +360,7 @@ impl Planner<'_> {
         let known = || candidates.iter().filter_map(|id| self.scene.object(*id));
         let class = known().next().map(|object| object.class);
         let is_alike = known().all(|object| Some(object.class) == class);
-        let nearest = known().min_by(|one, other| self.way_m(one).total_cmp(&self.way_m(other)));
-        nearest.filter(|_| is_alike).map(|object| object.id).ok_or(fault)
+        self.nearest_of(known()).filter(|_| is_alike).ok_or(fault)
     }
 
     fn first_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {

@@ -149,12 +149,17 @@ fn shaped(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
             let rest: Vec<String> = between.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
             let about = match shape.kind {
                 QuestionKind::Which => which_is_so(lexicon, &rest),
-                QuestionKind::Owner if owned(lexicon, &rest).is_some() => owned(lexicon, &rest),
-                _ => at_start(lexicon, &rest).filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, &rest)),
+                QuestionKind::Owner => owned(lexicon, &rest).or_else(|| first_named(lexicon, &rest)),
+                _ => first_named(lexicon, &rest),
             };
             (about.is_some() || shape.kind.stands_alone()).then_some(Question::new(shape.kind, about, rest))
         })
     })
+}
+
+/// The phrase that words begin with, or else the first thing that they name.
+fn first_named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    at_start(lexicon, words).filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, words))
 }
 
 /// `mug is that on the table`, of `whose`: the mug on the table.

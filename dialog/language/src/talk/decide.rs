@@ -35,7 +35,6 @@ const UNSURE: &str = "If I understand you right:";
 /// What is said of a stop when all is done.
 const DONE_ALREADY: &str = "I have done that already. Shall I undo it?";
 const AT_REST: &str = "I am not doing anything now.";
-const UNDO: &str = "undo";
 /// How likely that is meant of which the grammar leaves words out.
 const BY_GRAMMAR: f32 = 0.7;
 /// One in so many words that nobody ever met is too much to guess at: an unknown verb is no deed, and of another language nothing is guessed.
@@ -147,9 +146,8 @@ impl Conversation<'_> {
 
     /// What is said to who stops what has been done already: that it can be undone.
     fn too_late(&self, context: &mut Context) -> Understanding {
-        let mut then = context.at_new_utterance();
-        match self.requested(UNDO, &mut then) {
-            Some(Understanding::Plan { steps, .. }) if self.judge.asking != Asking::Never => {
+        match self.undo(&mut context.at_new_utterance()) {
+            Understanding::Plan { steps, .. } if self.judge.asking != Asking::Never => {
                 context.pending = Some(Pending::Offer { plans: vec![steps] });
                 ask::confirmation(DONE_ALREADY.to_owned())
             }

@@ -69,28 +69,27 @@ impl Conversation<'_> {
             named.is_some_and(|namings| namings.iter().all(|naming| fits(self.catalog.class(naming.class))))
         };
         // `the coffee cup` where `the cup` was said: which kind is at hand the rewriter does not know.
-        let is_kind = |kind: &String, rest: &[String]| {
-            let of_kind: Vec<String> = std::iter::once(kind).chain(rest).cloned().collect();
-            let length = |words: &[String]| lexicon.classes.longest(words).map_or(0, |(length, _)| length);
-            !source.words.contains(kind)
+        let is_kind = |word: &String, rest: &[String]| {
+            let of_kind: Vec<String> = std::iter::once(word).chain(rest).cloned().collect();
+            !source.words.contains(word)
                 && source.said.contains(&rest[0])
-                && length(&of_kind) == length(rest) + 1
+                && name_length(lexicon, &of_kind) == name_length(lexicon, rest) + 1
                 && is_all(rest, &|class| class.has(Property::Pickupable))
         };
+        let is_color = |word: &String, rest: &[String]| {
+            if !source.words.contains(word) {
+                return is_all(rest, &|class| class.has(Property::Pickupable));
+            }
+            let is_of_another = source.said.contains(&rest[0])
+                && !source.said.contains(word)
+                && !source.pairs.contains(&[word.clone(), rest[0].clone()]);
+            is_of_another && is_all(rest, &|class| !class.has(Property::Toggleable))
+        };
         let is_invented = |at: usize| {
-            let color = words[at].to_owned();
+            let word = words[at].to_owned();
             let rest: Vec<String> = words[at + 1..].iter().flat_map(|word| token::words(word)).collect();
-            let Some(noun) = rest.first() else { return false };
-            if lexicon.colors.exact(std::slice::from_ref(&color)).is_none() {
-                return is_kind(&color, &rest);
-            }
-            if !source.words.contains(&color) {
-                return is_all(&rest, &|class| class.has(Property::Pickupable));
-            }
-            let is_of_another = source.said.contains(noun)
-                && !source.said.contains(&color)
-                && !source.pairs.contains(&[color, noun.clone()]);
-            is_of_another && is_all(&rest, &|class| !class.has(Property::Toggleable))
+            let names_color = lexicon.colors.exact(std::slice::from_ref(&word)).is_some();
+            !rest.is_empty() && if names_color { is_color(&word, &rest) } else { is_kind(&word, &rest) }
         };
         // Which is `the other mug` the rewriter does not see.
         let is_other = source.said.contains(OTHER) && !words.contains(&OTHER);
@@ -144,18 +143,23 @@ impl Conversation<'_> {
         let words = token::words(text);
         let says_all = |word: &String| ALL.contains(&word.as_str());
         let is_unnamed = |at: usize| {
-            let named = self.lexicon.classes.longest(&words[at..]).map_or(0, |(length, _)| length);
+            let named = name_length(self.lexicon, &words[at..]);
             named > 0 && words[at..at + named].iter().all(|word| !source.words.contains(word))
         };
         source.said.iter().any(says_all) && !words.iter().any(says_all) && (0..words.len()).any(is_unnamed)
     }
 }
 
+/// How many words name the thing that words begin with.
+fn name_length(lexicon: &Lexicon, words: &[String]) -> usize {
+    lexicon.classes.longest(words).map_or(0, |(length, _)| length)
+}
+
 /// Whether every sentence wants a yes or a no, and requests nothing.
 fn only_asks(lexicon: &Lexicon, words: &[String]) -> bool {
     let mut sentences =
         words.split(|word| token::ends_sentence(word)).filter(|sentence| !sentence.is_empty()).peekable();
-    let asks_to_know = |sentence: &[String]| matches!(sentence, [do_it, you, know, ..] if do_it == "do" && you == "you" && lexicon.yes_no.knowing.contains(know));
+    let asks_to_know = |sentence: &[String]| lexicon.yes_no.knowing.longest(sentence).is_some();
     let asks = |sentence: &[String]| whether::asked_at(lexicon, sentence).is_some() || asks_to_know(sentence);
     sentences.peek().is_some() && sentences.all(asks)
 }

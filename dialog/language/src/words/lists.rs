@@ -93,7 +93,7 @@ pub(crate) struct YesNo {
     pub(crate) being: BTreeSet<String>,
     pub(crate) modals: BTreeSet<String>,
     pub(crate) things: BTreeSet<String>,
-    pub(crate) knowing: BTreeSet<String>,
+    pub(crate) knowing: PhraseTable<()>,
     pub(crate) passive: BTreeSet<String>,
     pub(crate) between: BTreeSet<String>,
     filler: PhraseTable<()>,

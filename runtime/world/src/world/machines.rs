@@ -65,11 +65,12 @@ impl World {
     /// Whether a machine has yet to do its work on what is in or on this thing.
     pub(crate) fn is_at_work_in(&self, site: ObjectId) -> bool {
         let facts = self.facts();
-        self.state.existing().any(|(id, object)| {
+        let is_to_come = |id: ObjectId, run: Run| {
             let [effect, _] = ticks(self.catalog.table().device(&facts.class(id).id));
-            let is_to_come = |run: Run| run.work != Work::Nothing && self.state.tick <= run.since + effect;
-            object.run.is_some_and(|run| (run.site == site || id == site) && is_to_come(run))
-        })
+            run.work != Work::Nothing && self.state.tick <= run.since + effect
+        };
+        let mut running = self.state.existing().filter_map(|(id, object)| Some((id, object.run?)));
+        running.any(|(id, run)| (run.site == site || id == site) && is_to_come(id, run))
     }
 
     /// Moving parts follow their states; what the gravity pad lifts goes with it. Whether anything moved.
