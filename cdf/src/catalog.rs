@@ -19,6 +19,7 @@ use crate::{
     model::Model,
     nearest::{did_you_mean, nearest},
     room::{RoomId, Rooms},
+    state::{Fluid, StateFlag, StateFlags},
 };
 
 /// The index of a class in the [`Catalog`].
@@ -128,6 +129,24 @@ impl ObjectClass {
     #[must_use]
     pub fn has(&self, property: Property) -> bool {
         self.properties.contains(&property)
+    }
+
+    /// The states that one is built in, before a mission changes them.
+    #[must_use]
+    pub fn states_as_built(&self) -> StateFlags {
+        let flags = StateFlags::default();
+        match self.id.as_str() {
+            // The warehouse's cabinets stand open: missions put things in them that nobody is told to open.
+            "Door_01" | "KitchenCabinet_02" => flags.with(StateFlag::Opened),
+            "LightSwitch_01" | "FuseBox_01_Lever" | "FuseBox_01" | "FuseBox_02" => flags.with(StateFlag::Toggled),
+            _ => flags,
+        }
+    }
+
+    /// What one holds as it is built.
+    #[must_use]
+    pub fn fluid_as_built(&self) -> Fluid {
+        if self.id == "MilkCarton_01" { Fluid::Milk } else { Fluid::None }
     }
 }
 

@@ -8,6 +8,7 @@ pub(crate) mod imagine;
 pub(crate) mod memory;
 pub(crate) mod process;
 pub(crate) mod sight;
+pub(crate) mod surroundings;
 mod symbols;
 mod uses;
 
@@ -214,7 +215,7 @@ impl KnownObject {
         }
     }
 
-    /// All that a floor plan has, as it is known to who has seen it once and sees none of it now; the number of each is
+    /// All that a floor plan has as it is built, as it is known to who has seen it once and sees none of it now; the number of each is
     /// its place in the plan.
     #[must_use]
     pub fn furniture(catalog: &Catalog, layout: &Layout) -> Vec<Self> {
@@ -223,15 +224,16 @@ impl KnownObject {
             Some(ObjectId(at as u32))
         };
         let known = |placement: &Placement| {
+            let class = catalog.class_of_instance(&placement.instance)?;
             Some(Self {
                 id: number(&placement.instance)?,
                 instance: placement.instance.clone(),
-                class: catalog.class_of_instance(&placement.instance)?,
+                class,
                 room: placement.room,
                 position_m: layout.origin_in_world_m(placement),
                 yaw_rad: 0.0,
-                flags: StateFlags::default(),
-                fluid: Fluid::None,
+                flags: catalog.class(class).states_as_built(),
+                fluid: catalog.class(class).fluid_as_built(),
                 color: Color::Original,
                 parent: placement.on.as_deref().and_then(number),
                 text: String::new(),

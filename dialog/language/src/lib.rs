@@ -76,7 +76,7 @@ use crate::{
         focus::Focus,
         judge::{Costs, Judge},
     },
-    known::{describe, habits::Habits, imagine, process::Devices},
+    known::{describe, habits::Habits, imagine, process::Devices, surroundings},
     plan::{Planner, remedy},
     say::{ask, report, worded},
     talk::conversation::Conversation,
@@ -198,6 +198,12 @@ impl Language {
         let later = context.later.clone();
         let understanding = self.conversation(scene).chosen(object, context);
         context.keep(later, understanding)
+    }
+
+    /// What is around the robot, as a rewriter reads it: `break room with couch, 6 kitchen stools; on the counter banana, dirty plate`.
+    #[must_use]
+    pub fn surroundings(&self, scene: &Known) -> String {
+        surroundings::surroundings(&self.catalog, scene)
     }
 
     /// What people would call `object` in `scene`: `the red mug on the desk`.

@@ -20,5 +20,6 @@ mod rewritten;
 mod robustness;
 mod stop;
 mod support;
+mod surroundings;
 mod truth;
 mod utterances;

@@ -30,7 +30,7 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     ("what is on the round table?", &[("pick up the bowl", 0.95)]),
 ];
 
-fn written(said: &str, _: &[(bool, String)]) -> Vec<(String, f32)> {
+fn written(said: &str, _: &[(bool, String)], _: &str) -> Vec<(String, f32)> {
     let found = WRITTEN.iter().find(|(utterance, _)| *utterance == said).map_or(&[][..], |(_, written)| written);
     found.iter().map(|(text, probability)| ((*text).to_owned(), *probability)).collect()
 }

@@ -27,7 +27,7 @@ proptest! {
 
 // Most of these are rewritten, which takes a while.
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 25, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn jumbled_words_never_panic(first in jumble(), second in jumble(), third in jumble()) {

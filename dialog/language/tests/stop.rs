@@ -120,9 +120,9 @@ fn nothing_breaks_the_recogniser() {
     assert_eq!(find_stop("Stop… ¿puedes abrir la nevera?").unwrap().rest, "puedes abrir la nevera?");
 }
 
-/// The lines of a list that a robot which is busy takes for what they are not: of those that begin with `S: `, which say stop, and of those
-/// that begin with `N: `, which do not.
-fn mistaken(list: &str) -> [Vec<&str>; 2] {
+/// What a robot that is busy takes for what it is not, of each so many-th line of a list: of those that begin with `S: `, which say stop, and of
+/// those that begin with `N: `, which do not.
+fn mistaken(list: &str, every: usize) -> [Vec<&str>; 2] {
     let mut talk = crate::support::Talk::new(&[]);
     talk.say("go to the warehouse");
     let stops = |said: &str| {
@@ -130,20 +130,20 @@ fn mistaken(list: &str) -> [Vec<&str>; 2] {
         matches!(understanding, Understanding::Stop { .. })
     };
     [("S: ", true), ("N: ", false)].map(|(mark, says_stop)| {
-        let said: Vec<&str> = lines(list).filter_map(|line| line.strip_prefix(mark)).collect();
+        let said: Vec<&str> = lines(list).filter_map(|line| line.strip_prefix(mark)).step_by(every).collect();
         let mistaken: Vec<&str> = said.iter().copied().filter(|said| stops(said) != says_stop).collect();
         println!("{} of {} right; wrong:\n{}", said.len() - mistaken.len(), said.len(), mistaken.join("\n"));
         mistaken
     })
 }
 
-/// What it made of these at first contact, but for a few.
+/// What it made of a third of these at first contact, but for a few.
 #[test]
 fn most_stops_are_heard_at_first_contact() {
     let lists =
         [(include_str!("stops/first_contact.txt"), 45, 30), (include_str!("stops/first_contact_again.txt"), 70, 27)];
     for (list, most_missed, most_disturbing) in lists {
-        let [missed, disturbing] = mistaken(list).map(|said| said.len());
+        let [missed, disturbing] = mistaken(list, 3).map(|said| said.len());
         assert!(missed <= most_missed && disturbing <= most_disturbing, "{missed} missed, {disturbing} disturb");
     }
 }
@@ -154,11 +154,11 @@ fn most_stops_are_heard_at_first_contact() {
 fn other_wordings_are_measured_too() {
     let path = std::env::var_os("STOPS").map(PathBuf::from).expect("STOPS names a file");
     let list = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    mistaken(&list);
+    mistaken(&list, 1);
 }
 
 #[test]
 fn who_says_not_to_stop_does_not_stop_it() {
-    let [_, disturbing] = mistaken("N: don't stop now, you are nearly there\nN: dinna stop on my account");
+    let [_, disturbing] = mistaken("N: don't stop now, you are nearly there\nN: dinna stop on my account", 1);
     assert!(disturbing.is_empty(), "{}", disturbing.join("\n"));
 }

@@ -11,6 +11,10 @@ fn main() {
         (false, "pick up the white mug on the counter, would you?".to_owned()),
         (true, "OK, picking up the mug. I have the mug.".to_owned()),
     ];
+    let around = "break room with sink, couch, time machine, 6 stool, trash can, light switch, toaster, coffee maker; main office: yellow mug, hammer; small office: \
+                  boss mug; robotics lab: laser tip, control panel; fridge: milk, 2 apple, can, sandwich; freezer: pie; drawer: spoon; counter top: mug, banana; \
+                  wall cabinet: yellow mug, bowl; round table: dirty plate, donut; open microwave; in my hand";
+    let hands = ["banana", "spoon", "mug", "donut", "apple", "bowl", "can"];
     for said in [
         "turn it on",
         "could you put it in the microwave for me please, it has gone cold",
@@ -18,9 +22,13 @@ fn main() {
     ] {
         let mut seconds: Vec<f64> = Vec::new();
         let mut written = String::new();
-        for _ in 0..7 {
+        for held in hands {
             let begun = Instant::now();
-            written = rewriter.rewrite(said, &before).first().map(|one| one.text.clone()).unwrap_or_default();
+            written = rewriter
+                .rewrite(said, &before, &format!("{around} {held}"))
+                .first()
+                .map(|one| one.text.clone())
+                .unwrap_or_default();
             seconds.push(begun.elapsed().as_secs_f64());
         }
         seconds.sort_by(f64::total_cmp);

@@ -1,23 +1,25 @@
 //! What people say to a robot, in; what it means in plain requests, out (utterance rewriting).
 //!
-//! Pure: no I/O, no clock, no randomness, and the same bits on every machine. It knows nothing of the world. A language model of some hundred
-//! million parameters (SmolLM2-135M, fitted to labelled dialogs by `train/fit.py`) reads an utterance and the lines before it. It resolves `it` and
-//! `the other one`, says things by their usual names, and leaves out remarks and reasons.
+//! Pure: no I/O, no clock, no randomness, and the same bits on every machine. Of the world it knows what a few lines of text say. A language model of
+//! some hundred million parameters (SmolLM2-135M, fitted to labelled dialogs by `train/fit.py`) reads what is around the robot, the lines before an
+//! utterance, and the utterance. It resolves `it` and `the other one`, says things by their usual names, and leaves out remarks and reasons.
 //!
 //! ```
-//! let rewritings = cohabit_rewriter::builtin().rewrite("pick up the mug", &[]);
+//! let rewritings = cohabit_rewriter::builtin().rewrite("pick up the mug", &[], "");
 //! assert_eq!(rewritings[0].text, "pick up the mug");
 //! ```
 
 mod matrix;
+mod read_before;
 mod sums;
 mod tensors;
 mod tokens;
 mod transformer;
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use crate::{
+    read_before::ReadBefore,
     tensors::Tensors,
     tokens::{Token, Tokens},
     transformer::{Memory, Transformer},
@@ -51,13 +53,17 @@ pub fn builtin() -> &'static Rewriter {
     &BUILTIN
 }
 
-/// What an utterance may mean, as the rewriter that comes with the project has it: plain requests with their probabilities, best first.
+/// What an utterance may mean, as the rewriter that comes with the project has it: plain requests with their probabilities, best first. Behind
+/// `social` stands of what kind the talk is, where that is known: `social: thanks`.
 #[must_use]
-pub fn rewrite(utterance: &str, before: &[Line]) -> Vec<(String, f32)> {
-    let rewritings = builtin().rewrite(utterance, before).into_iter();
-    rewritings.map(|rewriting| (rewriting.text, rewriting.probability)).collect()
+pub fn rewrite(utterance: &str, before: &[Line], around: &str) -> Vec<(String, f32)> {
+    let rewritings = builtin().rewrite(utterance, before, around).into_iter();
+    let told = |text: String| if text == TALK { builtin().talk_kind(utterance, before).unwrap_or(text) } else { text };
+    rewritings.map(|rewriting| (told(rewriting.text), rewriting.probability)).collect()
 }
 
+/// The most tokens that are read of what is around the robot, the last ones.
+const MOST_AROUND: usize = 260;
 /// The most lines before the utterance that are read, the words of one, the tokens of all, and those of the utterance.
 const MOST_LINES: usize = 4;
 const MOST_LINE_WORDS: usize = 30;
@@ -66,16 +72,21 @@ const MOST_READ: usize = 150;
 /// The most tokens that are written.
 const MOST_WRITTEN: usize = 70;
 /// How many ways to go on are followed at once.
-const BEAM: usize = 4;
+const BEAM: usize = 6;
 /// Ways this much less likely than the best are given up.
 const LEAST_LOG_RATIO: f32 = -4.0;
 
-/// What stands before a line of the robot, before one of the person, before the utterance, and where the requests begin.
-const MARKS: usize = 5;
+/// What stands before a line of the robot, before one of the person, before the utterance, where the requests begin, in plain words or in the
+/// person's own, and before what is around.
+const MARKS: usize = 6;
 const ROBOT: usize = 0;
 const PERSON: usize = 1;
 const NOW: usize = 2;
 const REQUESTS: usize = 3;
+const OWN_WORDS: usize = 4;
+const AROUND: usize = 5;
+/// Talk that asks for nothing.
+const TALK: &str = "social";
 
 /// A line of the dialog: whether the robot said it, and what.
 pub type Line = (bool, String);
@@ -95,6 +106,8 @@ pub struct Rewriting {
 pub struct Rewriter {
     network: Transformer,
     tokens: Tokens,
+    /// What was read of earlier prompts: much of the next one is the same.
+    read_before: ReadBefore,
 }
 
 impl Rewriter {
@@ -109,25 +122,49 @@ impl Rewriter {
         if network.tokens() != tokens.len() || network.marks() < MARKS {
             return Err(ModelError::Shape("tokens".to_owned()));
         }
-        Ok(Self { network, tokens })
+        Ok(Self { network, tokens, read_before: ReadBefore::default() })
     }
 
-    /// The likeliest meanings of an utterance, best first, given the lines of the dialog before it, the latest last.
+    /// The likeliest meanings of an utterance, best first, given the lines of the dialog before it, the latest last, and what is around the robot, which
+    /// may be empty, such as `break room with sink, 6 stool; main office: hammer; counter top: banana, dirty plate; open fridge; in my hand mug`.
     ///
     /// Any text is taken; of a long one the first 150 tokens are read. There is none of a text without any word.
     #[must_use]
-    pub fn rewrite(&self, utterance: &str, before: &[Line]) -> Vec<Rewriting> {
+    pub fn rewrite(&self, utterance: &str, before: &[Line], around: &str) -> Vec<Rewriting> {
+        self.written(utterance, before, around, REQUESTS)
+    }
+
+    /// Of what kind talk is that asks for nothing, as `social: praise`: thanks, praise, greeting, bye, apology, complaint, agreement or small talk.
+    #[must_use]
+    pub fn talk_kind(&self, utterance: &str, before: &[Line]) -> Option<String> {
+        let written = self.written(utterance, before, "", OWN_WORDS).into_iter();
+        let first = written.filter_map(|one| one.text.split("; ").next().map(str::to_owned)).next()?;
+        first.starts_with(TALK).then_some(first)
+    }
+
+    /// What is written behind a mark, the likeliest first.
+    fn written(&self, utterance: &str, before: &[Line], around: &str, mark: usize) -> Vec<Rewriting> {
         let said = self.tokens.of(utterance);
         if said.is_empty() {
             return Vec::new();
         }
-        let mut read = self.context(before);
+        let mut read = self.surroundings(around);
+        read.extend(self.context(before));
         read.push(Token::Mark(NOW));
         read.extend(said.into_iter().take(MOST_READ).map(Token::Text));
-        read.push(Token::Mark(REQUESTS));
+        read.push(Token::Mark(mark));
         let mut rewritings: Vec<Rewriting> = self.search(&read).into_iter().map(|way| self.rewriting(&way)).collect();
         rewritings.retain(|rewriting| !rewriting.text.is_empty());
         rewritings
+    }
+
+    fn surroundings(&self, around: &str) -> Vec<Token> {
+        let mut tokens = self.tokens.of(around);
+        if tokens.is_empty() {
+            return Vec::new();
+        }
+        let last = tokens.split_off(tokens.len().saturating_sub(MOST_AROUND));
+        std::iter::once(Token::Mark(AROUND)).chain(last.into_iter().map(Token::Text)).collect()
     }
 
     /// The last lines before an utterance.
@@ -147,9 +184,13 @@ impl Rewriter {
 
     /// The likeliest ways to go on from what was read, best first.
     fn search(&self, read: &[Token]) -> Vec<Way> {
-        let mut prompt = [self.network.begin()];
-        let scores = self.network.next(read, &vec![0; read.len()], &mut prompt, &Memory::default());
+        let known = self.read_before.of(read);
+        let mut prompt = [known.unwrap_or_else(|| self.network.begin())];
+        let rest = &read[prompt[0].length()..];
+        let scores = self.network.next(rest, &vec![0; rest.len()], &mut prompt, &Memory::default());
         let [prompt] = prompt;
+        let prompt = Arc::new(prompt);
+        self.read_before.keep(read, &prompt);
         let start = Way { tokens: Vec::new(), log_probability: 0.0 };
         let mut finished: Vec<Way> = Vec::new();
         let mut live = self.followed(&[start], &scores, &mut finished);

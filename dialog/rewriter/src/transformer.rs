@@ -56,6 +56,22 @@ struct KeysAndValues {
     values: Vec<f32>,
 }
 
+impl Memory {
+    /// How many tokens were read.
+    pub(crate) const fn length(&self) -> usize {
+        self.length
+    }
+
+    /// The same of the first tokens alone.
+    pub(crate) fn beginning(&self, length: usize) -> Self {
+        let first = |layer: &KeysAndValues| KeysAndValues {
+            keys: layer.keys[..length * KEYS].to_vec(),
+            values: layer.values[..length * KEYS].to_vec(),
+        };
+        Self { layers: self.layers.iter().map(first).collect(), length }
+    }
+}
+
 impl Transformer {
     pub(crate) fn new(tensors: &Tensors<'_>) -> Result<Self, ModelError> {
         Ok(Self {

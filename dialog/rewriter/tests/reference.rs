@@ -1,7 +1,7 @@
 //! What the rewriter writes is what the program that fitted it writes.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use cohabit_rewriter::Line;
+use cohabit_rewriter::{Line, Rewriter};
 use serde_json::Value;
 
 /// How far the logarithm of a probability may be from that of the other program, whose sums are less exact.
@@ -16,7 +16,11 @@ fn rewritings_are_those_of_the_program_that_fitted_it() {
         let before = row["before"].as_array().unwrap().iter();
         let before: Vec<Line> =
             before.map(|line| (line[0].as_bool().unwrap(), line[1].as_str().unwrap().to_owned())).collect();
-        let rewritings = cohabit_rewriter::builtin().rewrite(row["said"].as_str().unwrap(), &before);
+        let rewritings = cohabit_rewriter::builtin().rewrite(
+            row["said"].as_str().unwrap(),
+            &before,
+            row["around"].as_str().unwrap(),
+        );
         let wanted = row["text"].as_str().unwrap();
         let same = rewritings.iter().find(|rewriting| rewriting.text == wanted);
         let is_close = |probability: f32| {
@@ -37,13 +41,23 @@ fn any_text_is_taken() {
     let long = "please ".repeat(400);
     for said in ["", " \n", "?", "\u{0}\u{1F600}", "é", &long] {
         let before = [(true, long.clone()), (false, said.to_owned())];
-        let rewritings = cohabit_rewriter::builtin().rewrite(said, &before);
+        let rewritings = cohabit_rewriter::builtin().rewrite(said, &before, said);
         assert!(rewritings.iter().all(|one| (0.0..=1.0).contains(&one.probability)), "{rewritings:?}");
     }
 }
 
+/// What was read before is not read again, and changes nothing.
 #[test]
 fn the_same_words_give_the_same_bits() {
-    let rewrite = || cohabit_rewriter::builtin().rewrite("stick the kettle on, would you, and fetch me a mug", &[]);
-    assert_eq!(rewrite(), rewrite());
+    let said = "stick the kettle on, would you, and fetch me a mug";
+    let rewriter = || Rewriter::new(include_bytes!("../rewriter.safetensors")).unwrap();
+    let around = "break room with sink, 6 stool; counter top: mug, banana";
+    let alone = rewriter().rewrite(said, &[], around);
+    let warm = rewriter();
+    for (other, around) in [("wash the mug", around), (said, ""), ("is there a mug?", "break room with sink, couch")] {
+        let _ = warm.rewrite(other, &[], around);
+        assert_eq!(warm.rewrite(said, &[], around), rewriter().rewrite(said, &[], around));
+    }
+    assert_eq!(warm.rewrite(said, &[], around), alone);
+    assert_eq!(warm.rewrite(said, &[], around), alone);
 }

@@ -39,6 +39,8 @@ CORPUS_SHARE = 0.15
 #: How often what is read is the label itself: who speaks plainly is taken at their word.
 PLAIN_SHARE = 0.05
 CONTEXTS = corpus.CRATE.parent / "language/fit/contexts"
+#: How often what is around the robot is not told, and how often it is told in another order.
+BLIND_SHARE, MIXED_SHARE = 0.1, 0.5
 #: What stands between two parts of a message.
 PAUSES = [". ", ". ", ", ", ", ", " and ", ". then ", ", then ", " ... ", "; ", ". also "]
 #: Labels that are no plain request.
@@ -48,7 +50,7 @@ PARTICIPANTS = corpus.CRATE.parent / "language/tests/participants"
 TALKS = [*sorted(PARTICIPANTS.glob("*.txt")), *sorted((corpus.CRATE / "corpus/talks").glob("*.txt"))]
 #: Nothing is fitted to these talks and writers: they are to measure with.
 UNSEEN_TALKS = {"oona", "bram", "sofia", "niamh", "piotr", "winifred", "bernard", "vikram"}
-UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd".split())
+UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd fm fn fo".split())
 
 
 def main():
@@ -95,20 +97,15 @@ def begin(model, files):
 
 
 def plain(label):
-    """A label of the corpus without what kind of small talk it is, and without the mark of what is none of the known forms."""
-    requests = []
-    for request in label.split("; "):
-        request = "social" if request.startswith("social: ") else request.removeprefix("*")
-        if request != "social" or "social" not in requests:
-            requests.append(request)
-    return "; ".join(requests)
+    """A label of the corpus without the mark of what is none of the known forms."""
+    return "; ".join(dict.fromkeys(request.removeprefix("*") for request in label.split("; ")))
 
 
 def of_corpus():
-    """What was said before, what is said, its labels, and whether they are in the person's own words."""
+    """What is around the robot (here nobody told), what was said before, what is said, its labels, and whether they are in the person's own words."""
     for sample in corpus.samples():
         if sample.speaker not in corpus.HELD_OUT:
-            yield sample.before, sample.utterance, [plain(sample.label)], True
+            yield "", sample.before, sample.utterance, [plain(sample.label)], True
 
 
 def labels_of(texts):
@@ -116,17 +113,17 @@ def labels_of(texts):
 
 
 def of_writer(writer):
-    """The same of a writer; with what the robot said, where `contexts` of `dialog/language/fit` wrote that down."""
+    """The same of a writer; with what is around the robot and what it said, where `contexts` of `dialog/language/fit` wrote that down."""
     contexts = CONTEXTS / f"{writer}.jsonl"
     if contexts.exists():
         for row in map(json.loads, contexts.read_text(encoding="utf-8").splitlines()):
-            yield row["before"], row["said"], labels_of(row["meant"]), False
+            yield row["around"], row["before"], row["said"], labels_of(row["meant"]), False
         return
     for line in (corpus.WRITERS / f"{writer}.txt").read_text(encoding="utf-8").splitlines():
         said, arrow, meant = line.partition(" => ")
         if arrow and not line.startswith(("#", "[")):
             *earlier, utterance = said.split(" / ")
-            yield [(False, one) for one in earlier], utterance, labels_of(meant.split(" || ")), False
+            yield "", [(False, one) for one in earlier], utterance, labels_of(meant.split(" || ")), False
 
 
 def of_talk(file):
@@ -138,7 +135,7 @@ def of_talk(file):
         elif line.startswith("> "):
             said = line[2:]
         elif line.startswith("    = "):
-            yield list(before), said, labels_of(line[6:].split(" || ")), False
+            yield "", list(before), said, labels_of(line[6:].split(" || ")), False
             before.append((False, said))
         elif line.startswith(("    - ", "    ? ", "    ! ")):
             before.append((True, line[6:].split("   (")[0]))
@@ -154,6 +151,11 @@ class Samples:
         self.written = [sample for writer in writers for sample in of_writer(writer)]
         talks = [file for file in TALKS if file.stem not in UNSEEN_TALKS]
         self.written += [sample for file in talks for sample in of_talk(file)]
+        #: What may be said at the beginning, by what is around.
+        self.beginnings = {}
+        for around, before, said, labels, _ in self.written:
+            if not before and not {"?", "none"} & {surest(labels)}:
+                self.beginnings.setdefault(around, []).append((said, labels))
 
     def batches(self, size):
         """Batches of samples of like length: little of a batch is padding."""
@@ -166,25 +168,31 @@ class Samples:
     def draw(self):
         """The tokens that are read, and those that are to be written."""
         chance = self.random.random
-        before, said, labels, by_words = self.random.choice(self.corpus if chance() < CORPUS_SHARE else self.written)
+        around, before, said, labels, by_words = self.random.choice(self.corpus if chance() < CORPUS_SHARE else self.written)
         label = surest(labels)
         if not by_words and label not in WITHOUT_REQUEST and chance() < PLAIN_SHARE:
             before, said = [], self.joined(label.split("; "))
         while not by_words and chance() < 0.15:
-            said, label = self.with_another(said, label)
+            said, label = self.with_another(around, said, label)
         if chance() < 0.15:
             said = " ".join(slip(self.random, word) if chance() < 0.1 else word for word in said.split(" "))
         if chance() < 0.15:
             said = re.sub(r"[.,!?;:]", "", said)
-        return language_model.prompt(before, said, by_words), to_write(label)
+        return language_model.prompt(self.seen(around), before, said, by_words), to_write(label)
 
-    def with_another(self, said, label):
+    def seen(self, around):
+        """What is around the robot, in another order, or nothing, now and then."""
+        if not around or self.random.random() < BLIND_SHARE:
+            return ""
+        return mixed(self.random, around) if self.random.random() < MIXED_SHARE else around
+
+    def with_another(self, around, said, label):
         """Two utterances in one message."""
-        before, other, labels, _ = self.random.choice(self.written)
-        labels = [label, surest(labels)]
-        if before or {"?", "none"} & set(labels):
+        others = self.beginnings.get(around)
+        if not others or {"?", "none"} & {label}:
             return said, label
-        asked = [one for one in labels if one != "social"]
+        other, labels = self.random.choice(others)
+        asked = [one for one in [label, surest(labels)] if one != "social"]
         return self.joined([said, other]), "; ".join(asked) or "social"
 
     def joined(self, parts):
@@ -194,6 +202,16 @@ class Samples:
             pause = " " if text.endswith(("?", "!")) else self.random.choice(PAUSES)
             text = text.rstrip(" .") + pause + part
         return text
+
+
+def mixed(drawn, around):
+    """What is around the robot with its lists, and the parts that have one, in another order."""
+    parts = [part.split(": ") for part in around.split("; ")]
+    listed = [at for at, part in enumerate(parts) if len(part) == 2]
+    for at, part in zip(listed, drawn.sample([parts[at] for at in listed], len(listed)), strict=True):
+        things = part[1].split(", ")
+        parts[at] = [part[0], ", ".join(drawn.sample(things, len(things)))]
+    return "; ".join(": ".join(part) for part in parts)
 
 
 def slip(drawn, word):
@@ -248,7 +266,7 @@ def train(model, given):
         losses = [*losses[-99:], loss.detach()]
         if step % 20 == 0:
             print(f"step {step}, {100 * done:.0f} %, loss {sum(losses).item() / len(losses):.3f}", flush=True)
-        if step % 500 == 0:
+        if step % 1000 == 0:
             print(f"step {step}, {measured(model, unseen())}", flush=True)
             if given.keep:
                 torch.save(model.state_dict(), given.keep)
@@ -275,8 +293,8 @@ def measured(model, samples):
     model.eval()
     rows = [
         (len(read) + len(label), read, to_write(label), at, label == surest(labels))
-        for at, (before, said, labels, _) in enumerate(samples)
-        for read in [language_model.prompt(before, said, False)]
+        for at, (around, before, said, labels, _) in enumerate(samples)
+        for read in [language_model.prompt(around, before, said, False)]
         for label in labels
     ]
     rows.sort(key=lambda row: row[0])
@@ -323,18 +341,18 @@ def compare(model, writer):
     """How many utterances are rewritten as one of their labels."""
     talk = next((file for file in TALKS if file.stem == writer), None)
     samples = list(of_talk(talk) if talk else of_writer(writer))
-    outputs = model.write([language_model.prompt(before, said, False) for before, said, *_ in samples], MOST_WRITTEN)
-    right = sum(key(text) in map(key, labels) for (text, _), (_, _, labels, _) in zip(outputs, samples, strict=True))
+    outputs = model.write([language_model.prompt(around, before, said, False) for around, before, said, *_ in samples], MOST_WRITTEN)
+    right = sum(key(text) in map(key, labels) for (text, _), (*_, labels, _) in zip(outputs, samples, strict=True))
     print(f"{writer}: {right} of {len(samples)} as labelled", flush=True)
 
 
 def write_reference(model, file):
     """What the model makes of some utterances, for the Rust code to be compared with."""
     samples = random.Random(SEED).sample([sample for writer in ("bj", "bk", "e", "ax") for sample in of_writer(writer)], 40)
-    outputs = model.write([language_model.prompt(before, said, False) for before, said, *_ in samples], MOST_WRITTEN)
+    outputs = model.write([language_model.prompt(around, before, said, False) for around, before, said, *_ in samples], MOST_WRITTEN)
     rows = []
-    for (before, said, *_), (text, log_probability) in zip(samples, outputs, strict=True):
-        row = {"before": before, "said": said, "text": text, "log_probability": round(log_probability, 3)}
+    for (around, before, said, *_), (text, log_probability) in zip(samples, outputs, strict=True):
+        row = {"around": around, "before": before, "said": said, "text": text, "log_probability": round(log_probability, 3)}
         rows.append(json.dumps(row, ensure_ascii=False))
     file.write_text("[\n" + ",\n".join(rows) + "\n]\n", encoding="utf-8")
 

@@ -14,10 +14,12 @@ LAYERS, WIDTH, HEADS, KEY_HEADS, HEAD, HIDDEN = 30, 576, 9, 3, 64, 1536
 LONGEST_WAVE = 100_000.0
 #: The token behind all that is written.
 END = 2
-#: The most lines before the utterance that are read, the words of one, the tokens of all, and those of the utterance.
-MOST_LINES, MOST_LINE_WORDS, MOST_CONTEXT, MOST_READ = 4, 30, 110, 150
-#: What stands before a line of the robot, one of the person, and the utterance; and where requests begin, in plain words or in the person's own.
-ROBOT, PERSON, NOW, REQUESTS, OWN_WORDS = range(5)
+#: The most tokens that are read of what is around the robot; the most lines before the utterance, the words of one, the tokens of all, and those of
+#: the utterance.
+MOST_AROUND, MOST_LINES, MOST_LINE_WORDS, MOST_CONTEXT, MOST_READ = 260, 4, 30, 110, 150
+#: What stands before a line of the robot, one of the person, and the utterance; where requests begin, in plain words or in the person's own; and what
+#: stands before what is around the robot.
+ROBOT, PERSON, NOW, REQUESTS, OWN_WORDS, AROUND = range(6)
 MARKS = 8
 #: How many numbers of 4 bits share a scale, as `src/tensors.rs` has it.
 GROUP = 48
@@ -55,12 +57,13 @@ def tokens(text):
     return tuple(tokenizer().encode(" " + " ".join(text.lower().split()), add_special_tokens=False).ids)
 
 
-def prompt(before, said, by_words):
-    """What is read: the lines before, of which each says whether it is the robot's, and the utterance."""
+def prompt(around, before, said, by_words):
+    """What is read: what is around the robot, the lines before, of which each says whether it is the robot's, and the utterance."""
+    surroundings = [mark(AROUND), *tokens(around)[-MOST_AROUND:]] if around else []
     context = []
     for by_robot, text in before[-MOST_LINES:]:
         context += [mark(ROBOT if by_robot else PERSON), *tokens(" ".join(text.split()[:MOST_LINE_WORDS]))]
-    return [*context[-MOST_CONTEXT:], mark(NOW), *tokens(said)[:MOST_READ], mark(OWN_WORDS if by_words else REQUESTS)]
+    return [*surroundings, *context[-MOST_CONTEXT:], mark(NOW), *tokens(said)[:MOST_READ], mark(OWN_WORDS if by_words else REQUESTS)]
 
 
 def mark(which):

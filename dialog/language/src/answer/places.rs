@@ -9,7 +9,7 @@ use crate::{
     read::phrase::Phrase,
     say::reply::HINT,
     understanding::Understanding,
-    words::{intent::Intent, prose},
+    words::{intent::Intent, lexicon::Side, prose},
 };
 
 impl Answerer<'_> {
@@ -57,7 +57,11 @@ impl Answerer<'_> {
 
     pub(crate) fn place_of(&self, phrase: &Phrase) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
-        let Ok(found) = self.ground().plausible(phrase, &want) else { return self.elsewhere(phrase) };
+        let found = match phrase.side {
+            Some(Side::Nearest | Side::Farthest) => self.ground().one(phrase, &want).map(|id| vec![id]),
+            _ => self.ground().plausible(phrase, &want),
+        };
+        let Ok(found) = found else { return self.elsewhere(phrase) };
         let places: Vec<String> = found.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
         Understanding::whether(true, prose::sentence(&prose::list(&places, "and")), found)
     }

@@ -189,10 +189,13 @@ impl Planner<'_> {
             None if settled.is_back => self.put_back(object),
             None if settled.intent == Intent::Bring => {
                 let is_held = self.scene.robot.held == Some(object);
+                let here = self.scene.robot.room;
+                let is_elsewhere = self.scene.object(object).is_some_and(|known| known.room != here);
                 self.pick_up(object, self.may_put_down)?;
                 let says = format!("bringing you {}", self.the(object));
-                // Where nobody is seen, what is in the hand is brought to where the robot was asked to fetch it.
-                if !self.go_to_person(&says) && is_held && self.go_back().is_ok() {
+                // Where nobody is seen, it is brought to where the robot was asked for it.
+                let comes_back = is_held || is_elsewhere;
+                if !self.go_to_person(&says) && comes_back && self.go_back().is_ok() && is_held {
                     self.notes.pop();
                 }
                 Ok(())

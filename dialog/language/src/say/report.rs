@@ -18,7 +18,7 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
         return "I got as close as I could.".to_owned();
     }
     let text = match step.action {
-        Action::PickUp { object } => format!("I have {}", the(object)),
+        Action::PickUp { object } => format!("I have {}{}", the(object), warmth(scene, object)),
         Action::Place { receptacle } => match scene.contents(receptacle).last() {
             Some(_) => {
                 format!("done, it is {} {} now", describe::preposition(catalog, scene, receptacle), the(receptacle))
@@ -42,6 +42,15 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
         Action::Move { .. } | Action::Rotate { .. } | Action::Look { .. } => format!("I am done {}", step.says),
     };
     prose::sentence(&text)
+}
+
+/// What nobody sees of a thing in the hand: that it is hot or cold.
+fn warmth(scene: &Known, id: ObjectId) -> &'static str {
+    match scene.object(id) {
+        Some(object) if object.has(StateFlag::Hot) => ", and it is hot",
+        Some(object) if object.has(StateFlag::Cold) => ", and it is cold",
+        _ => "",
+    }
 }
 
 fn interaction(

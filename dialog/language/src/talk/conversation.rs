@@ -10,9 +10,10 @@ use crate::{
     words::lexicon::Lexicon,
 };
 
-/// Writes what an utterance may mean, given the lines before it (whether the robot said one, and what), the latest last: plain requests with `; ` between
-/// them, each with its probability, best first. `social` is talk that asks for nothing, `none` what is nothing to a robot, `?` what nobody could tell.
-pub type Rewrite = fn(&str, &[(bool, String)]) -> Vec<(String, f32)>;
+/// Writes what an utterance may mean, given the lines before it (whether the robot said one, and what), the latest last, and what is around the robot
+/// ([`crate::Language::surroundings`]): plain requests with `; ` between them, each with its probability, best first. `social` is talk that asks for
+/// nothing, `none` what is nothing to a robot, `?` what nobody could tell.
+pub type Rewrite = fn(&str, &[(bool, String)], &str) -> Vec<(String, f32)>;
 
 /// All that stays the same during a turn.
 #[derive(Clone, Copy)]

@@ -8,14 +8,14 @@ use crate::{
     read::tail,
     say::{ask, reply},
     stop,
-    talk::{conversation::Conversation, room_kind, way::Way, wording::Wording},
+    talk::{conversation::Conversation, rewritten::WAITS, room_kind, way::Way, wording::Wording},
     understanding::{Asking, Clarification, Step, Understanding},
     words::token,
 };
 
 /// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is.
-const TO_CHANGE: f32 = 0.8;
-const TO_MOVE: f32 = 0.7;
+const TO_CHANGE: f32 = 0.72;
+const TO_MOVE: f32 = 0.72;
 /// The same where nothing but the robot itself is moved.
 const TO_LOOK: f32 = 0.45;
 /// How likely what is said must be the right reply, where nothing is done.
@@ -92,7 +92,8 @@ impl Conversation<'_> {
         }
         // A robot that does nothing, and asks nothing, need not stop.
         if !context.is_busy() && context.pending.is_none() {
-            let is_stop = |way: &Way| matches!(way.understanding, Understanding::Stop { then: None, .. });
+            let is_stop =
+                |way: &Way| matches!(&way.understanding, Understanding::Stop { then: None, reply } if reply != WAITS);
             let (stops, others): (Vec<Way>, Vec<Way>) = ways.into_iter().partition(is_stop);
             ways = others;
             let is_all = ways.first().is_none_or(|way| way.probability < way.least());
@@ -167,7 +168,10 @@ impl Conversation<'_> {
     fn reading(&self, wording: &Wording<'_>, is_plain: bool, by_grammar: &Way, context: &Context) -> Reading {
         let said = wording.length();
         let asks_for_lab = |context: &Context| matches!(context.pending, Some(Pending::Lab { .. }));
-        let is_of_lab = asks_for_lab(&by_grammar.context) && !asks_for_lab(context);
+        // Not `slab`, of which the spelling makes a lab.
+        let names_lab = matches!(&by_grammar.context.pending, Some(Pending::Lab { words, at }) if
+            words.get(*at).is_some_and(|lab| token::words(wording.utterance).contains(lab)));
+        let is_of_lab = names_lab && !asks_for_lab(context);
         let is_strange = context.pending.is_none() && is_strange(wording);
         let is_too_long = wording.utterance.chars().nth(token::MAX_CHARS).is_some();
         let is_conditional = by_grammar.is_understood() && self.is_plain_conditional(&wording.tidied, context);
@@ -261,7 +265,7 @@ fn settled(ways: &[Way]) -> Option<Way> {
         return None;
     }
     let plan = others.iter().find(|way| way.steps().is_some())?;
-    let probability = plan.probability.hypot(asking.probability);
+    let probability = plan.probability + asking.probability;
     let settled = Way { probability, ..plan.clone() };
     (plan.probability >= TO_GUESS && probability >= settled.least()).then_some(settled)
 }
@@ -271,9 +275,9 @@ fn begun(ways: &[Way]) -> Option<(Way, String)> {
     ways.iter().find_map(|way| {
         let (longer, more): (Vec<&Way>, Vec<String>) =
             ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).unzip();
-        // The square is the share of the rewriter's mass.
-        let squares = longer.into_iter().chain([way]).map(|one| one.probability * one.probability);
-        let begun = Way { probability: squares.sum::<f32>().sqrt(), ..way.clone() };
+        // Probabilities of ways are as their shares of what the rewriter writes.
+        let shares = longer.into_iter().chain([way]).map(|one| one.probability);
+        let begun = Way { probability: shares.sum(), ..way.clone() };
         (begun.probability >= begun.least()).then_some((begun, more.into_iter().next()?))
     })
 }

@@ -11,6 +11,8 @@ use crate::{
     words::{lexicon::Lexicon, question_kind::QuestionKind, token},
 };
 
+/// Talk that asks for nothing; behind it stands of what kind it is, where that is known.
+pub(crate) const TALK: &str = "social";
 /// How likely what was said is meant the other way round, or a question is a request.
 const TURNED_ROUND: f32 = 0.2;
 /// What says that a question is about this room; the first is how a plain one says so.
@@ -29,6 +31,8 @@ pub(crate) struct Source {
     said: BTreeSet<String>,
     /// Each two words that stood beside each other before.
     pairs: BTreeSet<[String; 2]>,
+    /// The same of what is around the robot.
+    pairs_around: BTreeSet<[String; 2]>,
     /// Whether a condition was denied: `if it is not`.
     is_denied: bool,
     /// Whether anything was.
@@ -42,11 +46,11 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    pub(crate) fn new(lexicon: &Lexicon, said: &[String], lines: &[(bool, String)]) -> Self {
+    pub(crate) fn new(lexicon: &Lexicon, said: &[String], lines: &[(bool, String)], around: &str) -> Self {
         let before: Vec<Vec<String>> = lines.iter().map(|(_, line)| lexicon.normalise(line).0).collect();
-        let pairs = before.iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0].clone(), pair[1].clone()]);
         Self {
-            pairs: pairs.collect(),
+            pairs: before.iter().flat_map(|line| pairs(line)).collect(),
+            pairs_around: pairs(&token::words(around)).collect(),
             said: said.iter().cloned().collect(),
             is_denied: denies_condition(lexicon, said),
             only_asks: only_asks(lexicon, said),
@@ -59,8 +63,8 @@ impl Source {
 }
 
 impl Conversation<'_> {
-    /// Plain requests without the colours and kinds of things that nobody named: `the red mug` where no red was spoken of, `the blue desk`
-    /// where `the desk` was said and something else was blue. Devices may be called by theirs.
+    /// Plain requests without the colours and kinds of things that nobody named, and that nothing around is called by: `the red mug` where no red
+    /// was spoken of, `the blue desk` where `the desk` was said and something else was blue. Devices may be called by theirs.
     pub(crate) fn without_invention(&self, text: &str, source: &Source) -> String {
         let words: Vec<&str> = text.split(' ').collect();
         let lexicon = self.lexicon;
@@ -88,6 +92,10 @@ impl Conversation<'_> {
         let is_invented = |at: usize| {
             let word = words[at].to_owned();
             let rest: Vec<String> = words[at + 1..].iter().flat_map(|word| token::words(word)).collect();
+            // `that mug`, of which only a yellow one is there.
+            if rest.first().is_some_and(|next| source.pairs_around.contains(&[word.clone(), next.clone()])) {
+                return false;
+            }
             let names_color = lexicon.colors.exact(std::slice::from_ref(&word)).is_some();
             !rest.is_empty() && if names_color { is_color(&word, &rest) } else { is_kind(&word, &rest) }
         };
@@ -125,9 +133,10 @@ impl Conversation<'_> {
         let is_said = |words: &Vec<String>| words.last().is_some_and(|last| source.words.contains(last));
         let (denied, claimed): (Vec<_>, Vec<_>) = conditions.into_iter().partition(denies);
         let asks = |request: &str| request.ends_with('?') || request.starts_with("if ");
-        let turns_to_deed = source.only_asks && !text.split("; ").any(asks) && !matches!(text, "social" | "none" | "?");
+        let turns_to_deed =
+            source.only_asks && !text.split("; ").any(asks) && !is_talk(text) && !matches!(text, "none" | "?");
         let is_free = |request: &str| {
-            let is_deed = !request.ends_with('?') && !matches!(request, "social" | "none" | "stop");
+            let is_deed = !request.ends_with('?') && !is_talk(request) && !matches!(request, "none" | "stop");
             let words = token::words(request);
             is_deed && !condition::has_condition(self.lexicon, &words) && !self.is_wait(&words)
         };
@@ -148,6 +157,16 @@ impl Conversation<'_> {
         };
         source.said.iter().any(says_all) && !words.iter().any(says_all) && (0..words.len()).any(is_unnamed)
     }
+}
+
+/// Each two words that stand beside each other.
+fn pairs(words: &[String]) -> impl Iterator<Item = [String; 2]> {
+    words.windows(2).map(|pair| [pair[0].clone(), pair[1].clone()])
+}
+
+/// Whether it is talk that asks for nothing.
+pub(crate) fn is_talk(request: &str) -> bool {
+    request.strip_prefix(TALK).is_some_and(|kind| kind.is_empty() || kind.starts_with(": "))
 }
 
 /// How many words name the thing that words begin with.

@@ -4,26 +4,36 @@ use std::sync::LazyLock;
 
 use crate::{
     context::Context,
+    known::surroundings,
     read::{chatter, clause::Part, parts, segments},
     say::reply,
-    talk::{cache::Cache, conversation::Conversation, faithful::Source, way::Way, wording::Wording},
+    talk::{
+        cache::Cache,
+        conversation::Conversation,
+        faithful::{Source, TALK, is_talk},
+        way::Way,
+        wording::Wording,
+    },
     understanding::{Clarification, Understanding},
     words::token,
 };
 
 /// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
 const DOUBTFUL: f32 = 0.4;
-/// What is said to who asks for nothing.
-const SEEN: &str = "I see. Tell me when there is something to do.";
+/// What is said to talk of no known kind.
+const SEEN: &str = "I see. I am here when you need me.";
 const AGREED: &str = "OK.";
+/// What is said to who wants nothing done for now.
+pub(crate) const WAITS: &str = "OK, I wait. Tell me when to go on.";
 
 impl Conversation<'_> {
     /// What the rewriter takes an utterance for, the likeliest first; nothing, where the likeliest names something that nobody
     /// knows: others are mere guesses then.
     pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Way> {
         let (mut ways, mut is_doubtful) = (Vec::<Way>::new(), false);
-        let source = Source::new(self.lexicon, &wording.words, context.lines());
-        for (at, (text, probability)) in self.rewritings(wording.utterance, context).iter().enumerate() {
+        let around = self.around();
+        let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
+        for (at, (text, probability)) in self.rewritings(wording.utterance, context, &around).iter().enumerate() {
             let text = &self.with_this_room(&self.without_invention(text, &source), &source);
             let probability = probability * self.faithfulness(text, &source);
             let way = match self.of_rewriting(text, probability, wording, context) {
@@ -42,9 +52,14 @@ impl Conversation<'_> {
             }
         }
         self.weigh(&mut ways, wording, context);
-        // What it gives a probability of p is right about as often as √p, by writers that it was not fitted to: others may have said it otherwise.
+        // Others may have said it otherwise: how likely one is meant follows more from its share of what is written, and only by its fourth root
+        // from how likely that is, by writers that it was not fitted to.
         let most = if is_doubtful { DOUBTFUL } else { 1.0 };
-        ways.iter_mut().for_each(|way| way.probability = way.probability.sqrt().min(most));
+        let all: f32 = ways.iter().map(|way| way.probability).sum();
+        for way in &mut ways {
+            let share = way.probability / all.max(f32::MIN_POSITIVE);
+            way.probability = (way.probability * share.powi(3)).sqrt().sqrt().min(most);
+        }
         ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));
         ways
     }
@@ -70,8 +85,12 @@ impl Conversation<'_> {
         let understanding = match asking(text).as_str() {
             "?" => return None,
             "none" => Understanding::answer(AGREED),
-            "social" => self.reply_to_talk(wording),
+            talk if is_talk(talk) => self.reply_to_talk(talk, wording),
             "stop" => self.stopped("", &mut then),
+            "wait" => {
+                self.stopped("", &mut then);
+                Understanding::Stop { reply: WAITS.to_owned(), then: None }
+            }
             requests if token::words(requests) == token::words(wording.utterance) => {
                 self.understand_said(wording.utterance, &mut then)
             }
@@ -90,24 +109,35 @@ impl Conversation<'_> {
     }
 
     /// What is said to who asks for nothing: thanks, praise and such have a reply.
-    fn reply_to_talk(&self, wording: &Wording<'_>) -> Understanding {
+    fn reply_to_talk(&self, talk: &str, wording: &Wording<'_>) -> Understanding {
         let chat = segments::segments(self.lexicon, &wording.words).into_iter().find_map(|part| self.chat(part));
-        let kind = || self.lexicon.talk_kinds.iter().find(|(words, _)| words.occurs_in(&wording.words));
-        Understanding::answer(chat.or_else(|| kind().map(|(_, reply)| reply.as_str())).unwrap_or(SEEN))
+        let of_kind = || {
+            let kind = self.lexicon.talk_replies.get(talk.strip_prefix(TALK)?.strip_prefix(": ")?)?;
+            let asked = kind.asked.as_ref().filter(|_| wording.utterance.trim_end().ends_with('?'));
+            Some(asked.unwrap_or(&kind.reply).as_str())
+        };
+        Understanding::answer(chat.or_else(of_kind).unwrap_or(SEEN))
     }
 
-    fn rewritings(&self, utterance: &str, context: &Context) -> Vec<(String, f32)> {
+    /// What is around the robot, for a rewriter.
+    fn around(&self) -> String {
+        let has_rewriter = self.rewriter.is_some();
+        if has_rewriter { surroundings::surroundings(self.catalog, self.scene) } else { String::new() }
+    }
+
+    fn rewritings(&self, utterance: &str, context: &Context, around: &str) -> Vec<(String, f32)> {
         // The same words are often heard again: as an answer that a question offers, or when a setting is tried.
         static WRITTEN: LazyLock<Cache<Vec<(String, f32)>>> = LazyLock::new(Cache::default);
         let Some(rewrite) = self.rewriter else { return Vec::new() };
         let lines = context.lines();
-        WRITTEN.get_or_insert_with(&transcript(utterance, lines), || rewrite(utterance, lines))
+        let all = format!("{around}\n{}", transcript(utterance, lines));
+        WRITTEN.get_or_insert_with(&all, || rewrite(utterance, lines, around))
     }
 }
 
 /// Plain requests without talk beside them.
 fn asking(text: &str) -> String {
-    let asks = |request: &&str| !matches!(*request, "social" | "none");
+    let asks = |request: &&str| *request != "none" && !is_talk(request);
     let requests: Vec<&str> = text.split("; ").filter(asks).collect();
     if requests.is_empty() { text.to_owned() } else { requests.join("; ") }
 }

@@ -11,6 +11,7 @@ use serde::Deserialize;
 use crate::words::{
     intent::Intent,
     lexicon::{Direction, Lexicon, Manner, Preposition, Pronoun, Side, Small, StateWord},
+    lists::TalkReply,
     misheard::Misheard,
     question_kind::{QuestionKind, Shape},
     sound::Sounding,
@@ -108,7 +109,7 @@ struct VerbEntry {
 #[derive(Deserialize)]
 struct ChatFile {
     chat: Vec<ChatEntry>,
-    talk: Vec<ChatEntry>,
+    talk: BTreeMap<String, TalkReply>,
 }
 
 #[derive(Deserialize)]
@@ -298,11 +299,7 @@ impl Lexicon {
         for entry in file.chat {
             entry.words.iter().for_each(|words| self.chat.insert(words, entry.reply.clone()));
         }
-        for entry in file.talk {
-            let mut words = PhraseTable::default();
-            entry.words.iter().for_each(|phrase| words.insert(phrase, ()));
-            self.talk_kinds.push((words, entry.reply));
-        }
+        self.talk_replies = file.talk;
     }
 
     fn build_sounds(&mut self) {

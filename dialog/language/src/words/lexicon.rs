@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::words::{
     intent::Intent,
-    lists::{Chatter, Conditions, Fillers, WaitingWords, Wishes, YesNo},
+    lists::{Chatter, Conditions, Fillers, TalkReply, WaitingWords, Wishes, YesNo},
     misheard::Misheard,
     question_kind::{QuestionKind, Shape},
     sound::Sounding,
@@ -229,8 +229,8 @@ pub(crate) struct Lexicon {
     pub(crate) question_shapes: Vec<Shape>,
     /// Replies to what asks for nothing to be done.
     pub(crate) chat: PhraseTable<String>,
-    /// Words that tell what kind of talk it is that asks for nothing, and the reply to it; the first that fits counts.
-    pub(crate) talk_kinds: Vec<(PhraseTable<()>, String)>,
+    /// Replies to what asks for nothing to be done, by what kind of talk it is.
+    pub(crate) talk_replies: BTreeMap<String, TalkReply>,
     pub(crate) classes: PhraseTable<Vec<Naming>>,
     /// Single words of names of several words: `trash` for the trash can.
     pub(crate) name_parts: PhraseTable<Vec<Naming>>,

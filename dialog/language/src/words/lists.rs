@@ -138,3 +138,12 @@ impl YesNo {
             .any(|at| phrases.longest(&words[at..]).is_some_and(|(length, ())| self.is_filler(&words[at + length..])))
     }
 }
+
+/// What is said to a kind of talk that asks for nothing.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TalkReply {
+    pub(crate) reply: String,
+    /// The same to a question.
+    pub(crate) asked: Option<String>,
+}

@@ -56,6 +56,8 @@ pub enum Wanted {
     Plan(Vec<Step>, Known),
     /// Any question that is no guess.
     Question,
+    /// That this is asked.
+    Asked(String),
     /// An answer that says and points out this.
     Answer(String, Vec<cohabit_cdf::ObjectId>),
     /// That it cannot be done.
@@ -107,6 +109,7 @@ impl Wanted {
             }
             Understanding::Question { kind: Clarification::Request | Clarification::Appearance, .. }
             | Understanding::Refusal { is_lost: true, .. } => None,
+            Understanding::Question { kind: Clarification::Confirmation, text, .. } => Some(Self::Asked(text)),
             Understanding::Question { .. } => Some(Self::Question),
             Understanding::Answer { text, highlight, .. } => Some(Self::Answer(text, highlight)),
             Understanding::Refusal { .. } => Some(Self::Refusal),
@@ -122,6 +125,7 @@ impl Wanted {
             (Self::Question, Understanding::Question { kind, candidates, .. }) => {
                 *kind != Clarification::Confirmation || !candidates.is_empty()
             }
+            (Self::Asked(wanted), Understanding::Question { text, .. }) => wanted == text,
             (Self::Answer(wanted, pointed), Understanding::Answer { text, highlight, .. }) => {
                 bare(wanted) == bare(text) || !pointed.is_empty() && pointed == highlight
             }

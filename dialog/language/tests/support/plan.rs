@@ -49,7 +49,9 @@ fn add(catalog: &Catalog, known: &mut Known, class: &str, parent: &str) {
     let id = known.objects.iter().map(|object| object.id.0 + 1).max().unwrap_or(0);
     let [x, y, z] = parent.position_m;
     let kind = catalog.find(class).unwrap_or_else(|| panic!("no class {class}"));
-    let object = KnownObject::new(ObjectId(id), class.to_owned(), kind, parent.room, [x, y, z + 0.8]);
+    let mut object = KnownObject::new(ObjectId(id), class.to_owned(), kind, parent.room, [x, y, z + 0.8]);
+    let class = catalog.class(kind);
+    (object.flags, object.fluid) = (class.states_as_built(), class.fluid_as_built());
     let (parent, visible) = (Some(parent.id), parent.room == known.robot.room);
     known.objects.push(KnownObject { parent, visible, in_mission: true, ..object });
 }

@@ -85,16 +85,10 @@ impl Builder<'_> {
         let mut object = Object::new(instance.to_owned(), class, room, pose);
         let circuit = self.layout.rooms.iter().find(|plan| plan.id == room).map(|plan| i32::from(plan.circuit));
         object.circuit = circuit;
-        match self.catalog.class(class).id.as_str() {
-            // The warehouse's cabinets stand open: missions put things in them that nobody is told to open.
-            "Door_01" | "KitchenCabinet_02" => object.flags.set(StateFlag::Opened, true),
-            "LightSwitch_01" | "FuseBox_01_Lever" => object.flags.set(StateFlag::Toggled, true),
-            "FuseBox_01" | "FuseBox_02" => {
-                object.flags.set(StateFlag::Toggled, true);
-                object.feeds = circuit;
-            }
-            "MilkCarton_01" => object.fluid = Fluid::Milk,
-            _ => {}
+        let class = self.catalog.class(class);
+        (object.flags, object.fluid) = (class.states_as_built(), class.fluid_as_built());
+        if matches!(class.id.as_str(), "FuseBox_01" | "FuseBox_02") {
+            object.feeds = circuit;
         }
         Ok(self.changes().add(object))
     }

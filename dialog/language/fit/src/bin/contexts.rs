@@ -40,5 +40,6 @@ fn context(case: &Case<'_>) -> Option<serde_json::Value> {
     let (read, unread): (Vec<&str>, Vec<&str>) =
         case.expected.iter().partition(|label| cases::Wanted::new(label, &talk).is_some());
     let meant = if read.is_empty() { unread } else { read };
-    Some(json!({ "before": before, "said": case.said.last()?, "meant": meant }))
+    let around = talk.language.surroundings(&talk.scene);
+    Some(json!({ "around": around, "before": before, "said": case.said.last()?, "meant": meant }))
 }

@@ -214,7 +214,7 @@ fn a_stop_passes_what_is_held_back_and_ends_it() {
 
 #[test]
 fn what_is_said_is_heard_in_order_but_a_stop_at_once() {
-    let language = language().with_rewriter(|_, _| Vec::new());
+    let language = language().with_rewriter(|_, _, _| Vec::new());
     let mut stage = Stage::new("unheard", &language, &Holding::default());
     let utterance = |text: &str| (DialogKind::Utterance, text.to_owned());
     stage.say(SAID, 0);
