@@ -136,12 +136,12 @@ impl Turn {
 
     /// A size along x and y, turned.
     pub const fn size(self, [x, y]: [f32; 2]) -> [f32; 2] {
-        if self.0 % 2 == 0 { [x, y] } else { [y, x] }
+        if self.0.is_multiple_of(2) { [x, y] } else { [y, x] }
     }
 
     /// The axis across which it points: that of a wall that faces this way.
     pub const fn wall_axis(self) -> Axis {
-        if self.0 % 2 == 0 { Axis::Y } else { Axis::X }
+        if self.0.is_multiple_of(2) { Axis::Y } else { Axis::X }
     }
 }
 

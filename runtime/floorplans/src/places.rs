@@ -66,7 +66,7 @@ fn seen(site: &Site<'_>) -> Vec<[f32; 2]> {
         }
         site.placed[index].at_m
     };
-    (0..site.placed.len()).map(|index| holder(index)).map(|[x, y, _]| [x, y]).collect()
+    (0..site.placed.len()).map(holder).map(|[x, y, _]| [x, y]).collect()
 }
 
 /// The heading that shows the most, degrees.
