@@ -19,6 +19,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-parquet", 0, &["parquet"]),
     ("cohabit-world", 1, &["rapier3d", "polyanya"]),
     ("cohabit-bus", 1, &["iceoryx2"]),
+    ("cohabit-floorplans", 1, &[]),
     ("cohabit-planner", 1, &[]),
     ("cohabit-rewriter", 1, &["safetensors"]),
     ("cohabit-render", 2, &[]),

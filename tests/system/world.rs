@@ -77,6 +77,61 @@ fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
 }
 
 #[test]
+fn floor_plans_made_at_random_are_a_world_pack_in_which_missions_are_solved() {
+    let scratch = Scratch::new("generate-world");
+    let pack = scratch.path("homes");
+    let make = |folder: &str, workers: &str| {
+        let how = ["--kind", "home", "--rooms", "5", "--seed", "7", "--count", "3", "--workers", workers];
+        told(&[&["generate-world", "--name", "homes", "--out", folder], how.as_slice()].concat())
+    };
+    let (text, code) = make(&pack, "2");
+    assert_eq!(code, Some(0), "{text}");
+    let (text, code) = told(&["check", "--world", &pack]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("4 of 4 floor plans and missions are playable"), "{text}");
+    let (text, _) = told(&["catalog", "rooms", "--world", &pack]);
+    assert!(text.contains("living room") && text.contains("LivingRoom"), "{text}");
+
+    let other = scratch.path("again");
+    let (text, code) = make(&other, "1");
+    assert_eq!(code, Some(0), "{text}");
+    for file in ["world.toml", "layouts/Home5_7_000.toml", "layouts/Home5_7_002.toml"] {
+        let read = |folder: &str| std::fs::read(format!("{folder}/{file}")).unwrap();
+        assert!(read(&pack) == read(&other), "{file} depends on the number of workers");
+    }
+
+    let spec = scratch.write(
+        "spec.toml",
+        "pools = { layouts = [\"Home5_7_000\", \"Home5_7_001\", \"Home5_7_002\"] }\n\
+         [[type]]\nname = \"bring\"\nvars = [{ name = \"thing\", class = [\"Apple\", \"Bowl_01\"] }, \
+         { name = \"place\", kind = \"surface\" }]\ngoals = [\"place Contains=thing\"]\n",
+    );
+    let missions = scratch.path("missions.jsonl");
+    let (text, code) = told(&["generate", &spec, "--world", &pack, "--count", "3", "--out", &missions]);
+    assert_eq!(code, Some(0), "{text}");
+    let (text, code) = told(&["eval", &missions, "--world", &pack, "--agent", "expert", "--workers", "1"]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(!text.contains("not solved"), "{text}");
+}
+
+#[test]
+fn floor_plans_that_cannot_be_made_are_refused_with_what_would_be_right() {
+    let scratch = Scratch::new("no-plans");
+    let out = scratch.path("homes");
+    let check = |arguments: &[&str], expected: &str| {
+        let (text, code) = told(&[&["generate-world", "--out", &out], arguments].concat());
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains(expected), "{text}");
+        assert!(!Path::new(&out).exists(), "{text}");
+    };
+    check(&["--kind", "castle"], "write `office` or `home`");
+    check(&["--kind", "home", "--rooms", "0"], "from 1 to 12");
+    check(&["--kind", "office", "--rooms", "200"], "from 1 to 12");
+    check(&["--kind", "home", "--count", "1000"], "from 1 to 990");
+    check(&["--kind", "home", "--name", "My Homes"], "is no name of a world pack");
+}
+
+#[test]
 fn what_is_no_world_is_refused() {
     let scratch = Scratch::new("no-world");
     let into = scratch.path("packs");

@@ -39,11 +39,15 @@ impl FreeFloor {
         let columns = cells_along(east - west);
         let mut floor =
             Self { west_south_m: [west, south], columns, cells: vec![None; columns * cells_along(north - south)] };
-        let obstacles = obstacles(layout, catalog);
-        for index in 0..floor.cells.len() {
-            let point = floor.point_m(index);
-            let is_free = || obstacles.iter().all(|obstacle| obstacle.distance_m(point) >= radius_m);
-            floor.cells[index] = standing_room(layout, point, radius_m).filter(|_| is_free());
+        let mut is_blocked = vec![false; floor.cells.len()];
+        for obstacle in obstacles(layout, catalog) {
+            for index in floor.cells_around(&obstacle, radius_m) {
+                is_blocked[index] |= obstacle.distance_m(floor.point_m(index)) < radius_m;
+            }
+        }
+        for (index, is_blocked) in is_blocked.into_iter().enumerate() {
+            let is_free = |_: &RoomId| !is_blocked;
+            floor.cells[index] = standing_room(layout, floor.point_m(index), radius_m).filter(is_free);
         }
         floor.keep_reachable(start(layout, catalog));
         floor
@@ -73,6 +77,22 @@ impl FreeFloor {
         let middle =
             |start_m: f32, steps: usize| start_m + (u16::try_from(steps).map_or(0.0, f32::from) + 0.5) * CELL_M;
         [middle(self.west_south_m[0], column), middle(self.west_south_m[1], row)]
+    }
+
+    /// The cells that may be nearer than `within_m` to an obstacle, and some beside them.
+    fn cells_around(&self, obstacle: &Footprint, within_m: f32) -> impl Iterator<Item = usize> + use<> {
+        let corners = obstacle.corners_m();
+        let rows = self.cells.len() / self.columns.max(1);
+        let span = |axis: usize, count: usize| {
+            let along = corners.iter().map(|corner| corner[axis] - self.west_south_m[axis]);
+            let (least, most) =
+                along.fold((f32::INFINITY, f32::NEG_INFINITY), |(least, most), at| (least.min(at), most.max(at)));
+            // One more on both sides: rounding leaves none out.
+            let first = cells_along(least - within_m).saturating_sub(2);
+            first..(cells_along(most + within_m) + 1).min(count)
+        };
+        let (columns, all) = (self.columns, span(0, self.columns));
+        span(1, rows).flat_map(move |row| all.clone().map(move |column| row * columns + column))
     }
 
     /// Forgets what cannot be walked to from the first free cell of a room.

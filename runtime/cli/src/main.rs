@@ -16,6 +16,7 @@ mod export;
 mod failure;
 mod gallery;
 mod generate;
+mod generate_world;
 mod guide;
 mod man;
 mod minds;
@@ -85,6 +86,8 @@ enum Command {
     Benchmark(benchmark::Benchmark),
     /// Make missions from a specification, each with a plan that solves it
     Generate(generate::Generate),
+    /// Make furnished floor plans of offices or homes at random, as a world pack
+    GenerateWorld(generate_world::GenerateWorld),
     /// Have the expert play missions, and write a data set of what it does and what the robot sees
     Demonstrate(demonstrate::Demonstrate),
     /// Draw annotated views of the floor plans at random, and write them as a data set (COCO)
@@ -150,6 +153,7 @@ impl Command {
             | Self::Eval(_)
             | Self::Benchmark(_)
             | Self::Generate(_)
+            | Self::GenerateWorld(_)
             | Self::Demonstrate(_)
             | Self::Vision(_)
             | Self::Convert(_)
@@ -199,6 +203,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Eval(eval) => eval.run(),
         Command::Benchmark(benchmark) => benchmark.run(),
         Command::Generate(generate) => generate.run(),
+        Command::GenerateWorld(generate) => generate.run(),
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Vision(vision) => vision.run(),
         Command::Convert(convert) => convert.run(),

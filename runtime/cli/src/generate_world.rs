@@ -1,0 +1,119 @@
+//! `cohabit generate-world`: floor plans made at random, as a world pack.
+
+use std::{
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+use cohabit_floorplans::{FloorPlan, FloorPlans, Kind, PlanError, pack};
+use cohabit_generate::side_by_side;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::{
+    failure::{bad_input, environment},
+    terminal::shown,
+};
+
+/// Makes floor plans at random, furnished, and writes them as a world pack, which `play`, `check`, `generate`, `eval` and all other
+/// commands with `--world` take. Each plan is checked as `check` does it.
+#[derive(clap::Args)]
+pub struct GenerateWorld {
+    /// What the plans are of: `office` or `home`
+    #[arg(long, value_name = "KIND")]
+    kind: Kind,
+    /// How many rooms each plan has, from 1 to 12, without the hallway that plans of four rooms or more have
+    #[arg(long, value_name = "N", default_value_t = 6)]
+    rooms: usize,
+    /// How many floor plans to make, at most 990
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    count: usize,
+    /// The seed: the same one makes the same floor plans, however many there are
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The folder of the world pack, which is made
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+    /// The name of the world pack; that of its folder, if not given
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Threads; one for each core if not given. They do not change what is made
+    #[arg(long, value_name = "N")]
+    workers: Option<usize>,
+}
+
+impl GenerateWorld {
+    /// Makes all of them, then writes the pack.
+    pub fn run(&self) -> anyhow::Result<()> {
+        let name = self.pack_name();
+        pack::check(&name, self.count).map_err(|error| self.refused(&error))?;
+        if self.out.exists() {
+            return Err(self.exists_already());
+        }
+        let plans = FloorPlans::new(self.kind, self.rooms, self.seed).map_err(bad_input)?;
+        let began = Instant::now();
+        let made = self.make(&plans).map_err(bad_input)?;
+        self.write(&pack::files(&name, &plans, &made))?;
+        let (seconds, folder) = (began.elapsed().as_secs_f64(), shown(self.out.display()));
+        println!(
+            "{} floor plans in {seconds:.1} s: {folder}\nCheck them with: cohabit check --world {folder}",
+            made.len()
+        );
+        println!("Look around in the first: cohabit play look_around_{name} --world {folder}");
+        Ok(())
+    }
+
+    fn pack_name(&self) -> String {
+        let folder = || self.out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        self.name.clone().unwrap_or_else(folder)
+    }
+
+    fn refused(&self, error: &PlanError) -> anyhow::Error {
+        match (error, &self.name) {
+            // The name is that of a folder, which may be called as it is.
+            (PlanError::Name { .. }, None) => bad_input(format!("{error}; or give a name by --name")),
+            _ => bad_input(error),
+        }
+    }
+
+    fn exists_already(&self) -> anyhow::Error {
+        bad_input(format!("{}: exists already: take another folder", self.out.display()))
+    }
+
+    fn make(&self, plans: &FloorPlans) -> Result<Vec<FloorPlan>, PlanError> {
+        let workers = self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+        let mut workers = vec![(); workers.clamp(1, self.count)];
+        let bar = ProgressBar::new(self.count as u64).with_style(
+            ProgressStyle::with_template("{bar:30} {pos}/{len} made, {elapsed} ({eta} left)")
+                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        let made = side_by_side(&mut workers, 0..self.count, |(), number| {
+            bar.inc(1);
+            plans.plan(number as u64)
+        });
+        bar.finish_and_clear();
+        made
+    }
+
+    fn write(&self, files: &[(String, String)]) -> anyhow::Result<()> {
+        fs::create_dir(&self.out).map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => self.exists_already(),
+            ErrorKind::NotFound => {
+                bad_input(format!("{}: there is no folder to write it into: make that first", self.out.display()))
+            }
+            _ => failed(&self.out, &error),
+        })?;
+        for (path, text) in files {
+            let path = self.out.join(path);
+            let parent = path.parent().unwrap_or(&self.out);
+            fs::create_dir_all(parent).map_err(|error| failed(parent, &error))?;
+            fs::write(&path, text).map_err(|error| failed(&path, &error))?;
+        }
+        Ok(())
+    }
+}
+
+fn failed(path: &Path, error: &std::io::Error) -> anyhow::Error {
+    environment(format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,113 @@
+//! Furnishes a room by the table: along its walls, in its corners and in its middle.
+
+use super::{
+    arrange::Arrangement,
+    site::Site,
+    table::{FurnitureTable, Item, Place},
+};
+use crate::{
+    chance::Chance,
+    geometry::{HALF_WALL_M, Turn, Wall, bounds, metres},
+};
+
+/// Between the back of furniture and a wall, m.
+const BEHIND_M: f32 = 0.02;
+/// Between the back of what hangs there and a wall, m.
+const HUNG_M: f32 = 0.01;
+/// Between the side of furniture and a wall, m.
+const BESIDE_M: f32 = 0.03;
+/// Places that are tried for a thing, and for one that a room must have.
+const TRIES: [usize; 2] = [12, 40];
+/// The share of things at walls that go into its corners.
+const SNUG: f64 = 0.4;
+
+/// Puts all that the table says into a room; whether all that it must have is there.
+pub fn furnish(site: &mut Site<'_>, items: &[Item], table: &FurnitureTable, chance: &mut Chance) -> bool {
+    items.iter().all(|item| {
+        let wanted = count(item, site, chance);
+        let placed = (0..wanted).filter(|_| place(site, item, table, chance)).count();
+        !item.must || placed > 0
+    })
+}
+
+/// How many of an item there are to be.
+fn count(item: &Item, site: &Site<'_>, chance: &mut Chance) -> usize {
+    let [low, high] = item.count;
+    if !chance.is(item.share.unwrap_or(1.0)) {
+        return 0;
+    }
+    match item.each_m2 {
+        Some(each_m2) => ((site.area_m2() / each_m2) as usize).clamp(low, high),
+        None => low + chance.below(high + 1 - low),
+    }
+}
+
+/// Puts one of an item somewhere; whether there was room for it.
+fn place(site: &mut Site<'_>, item: &Item, table: &FurnitureTable, chance: &mut Chance) -> bool {
+    let mut names: Vec<&String> = item.any.iter().collect();
+    chance.shuffle(&mut names);
+    let tries = TRIES[usize::from(item.must)];
+    item.first.iter().chain(names).any(|name| {
+        let set = table.set(name);
+        (0..tries).any(|_| {
+            let Some(arrangement) = Arrangement::draw(&set, site.catalog, chance) else { return false };
+            let spot = match item.place {
+                Place::Wall => at_wall(site, &arrangement, BEHIND_M, None, chance),
+                Place::Corner => at_wall(site, &arrangement, BEHIND_M, Some(true), chance),
+                Place::Hung => at_wall(site, &arrangement, HUNG_M, Some(false), chance),
+                Place::Middle => in_the_middle(site, &arrangement, chance),
+            };
+            spot.is_some_and(|([x, y], turn)| site.try_place(&arrangement, [x, y, item.height_m], turn))
+        })
+    })
+}
+
+/// A place at some wall, in its corner or between its ends; the origin of the arrangement and its turn.
+fn at_wall(
+    site: &Site<'_>,
+    arrangement: &Arrangement,
+    behind_m: f32,
+    corner: Option<bool>,
+    chance: &mut Chance,
+) -> Option<([f32; 2], Turn)> {
+    let width_m = arrangement.bounds.high[1] - arrangement.bounds.low[1];
+    let is_long = |wall: &&Wall| metres(wall.length()) >= width_m + 2.0 * (HALF_WALL_M + BESIDE_M);
+    let long: Vec<Wall> = site.walls.iter().filter(is_long).copied().collect();
+    let wall = *long.get(chance.weighted(long.iter().map(|wall| wall.length() as f32)))?;
+    let is_snug = corner.unwrap_or_else(|| chance.is(SNUG));
+    let half_m = width_m / 2.0 + HALF_WALL_M + BESIDE_M;
+    let [from_m, to_m] = [metres(wall.from) + half_m, metres(wall.to) - half_m];
+    let middle_m = match (is_snug, chance.is(0.5)) {
+        (true, true) => from_m,
+        (true, false) => to_m,
+        // On a lattice of 5 cm.
+        (false, _) => ((chance.between(from_m, to_m) * 20.0).round() / 20.0).clamp(from_m, to_m),
+    };
+    Some((against(wall, middle_m, behind_m, arrangement), wall.faces))
+}
+
+/// The origin of an arrangement whose back is at a wall, its middle at a place along it.
+pub fn against(wall: Wall, middle_m: f32, behind_m: f32, arrangement: &Arrangement) -> [f32; 2] {
+    let bounds = &arrangement.bounds;
+    let aside_m = (bounds.low[1] + bounds.high[1]) / 2.0;
+    let [dx, dy] = wall.faces.apply([0.0, -aside_m]);
+    let [x, y] = wall.point(middle_m, HALF_WALL_M + behind_m - bounds.low[0]);
+    [x + dx, y + dy]
+}
+
+/// A place away from the walls, rather in the middle of the room.
+fn in_the_middle(site: &Site<'_>, arrangement: &Arrangement, chance: &mut Chance) -> Option<([f32; 2], Turn)> {
+    /// The farthest from the middle, as a share of the floor.
+    const ASIDE: f32 = 0.3;
+    let rect = *chance.pick(&site.rects)?;
+    let turn = *chance.pick(&Turn::ALL)?;
+    let around = bounds(&[rect]);
+    let at = |from: i32, to: i32, chance: &mut Chance| {
+        let aside = chance.between(0.0, ASIDE) * chance.between(-1.0, 1.0);
+        ((metres(from) + metres(to - from) * (0.5 + aside)) * 20.0).round() / 20.0
+    };
+    let [x, y] = [at(around.west, around.east, chance), at(around.south, around.north, chance)];
+    let middle = [0, 1].map(|axis| (arrangement.bounds.low[axis] + arrangement.bounds.high[axis]) / 2.0);
+    let [dx, dy] = turn.apply(middle);
+    Some(([x - dx, y - dy], turn))
+}

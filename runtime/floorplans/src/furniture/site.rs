@@ -1,0 +1,150 @@
+//! A room that is being furnished: what is in it, and what must stay free.
+
+use cohabit_cdf::{Catalog, ClassId, ObjectClass, Property};
+
+use super::arrange::Arrangement;
+use crate::{
+    geometry::{Block, HALF_WALL_M, Rect, Turn, Wall, is_clear, rounded, walls},
+    ground::{Ground, Usable},
+};
+
+/// Height of all rooms, m.
+pub const WALL_HEIGHT_M: f32 = 2.8;
+/// Between two things that do not belong together, m.
+const APART_M: f32 = 0.03;
+/// Rounding, m.
+const SLACK_M: f32 = 0.002;
+
+/// Something in its place in a room.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    pub class: ClassId,
+    /// The middle of its foot, m: in the world, or in the frame of what it stands on.
+    pub at_m: [f32; 3],
+    pub turn: Turn,
+    /// What it stands on, by its place in the list.
+    pub on: Option<usize>,
+    /// What its device works from or on.
+    pub works: Option<usize>,
+    pub size_m: [f32; 3],
+}
+
+impl Placed {
+    /// What it fills, if it stands on nothing else.
+    pub fn block(&self) -> Option<Block> {
+        self.on.is_none().then(|| Block::of(self.size_m, self.at_m, self.turn))
+    }
+
+    /// What it fills, also if it stands on another one of these; nothing, if that one stands on yet another.
+    pub fn filled(&self, all: &[Self]) -> Option<Block> {
+        let Some(holder) = self.on else { return self.block() };
+        let holder = all.get(holder).filter(|holder| holder.on.is_none())?;
+        let [dx, dy] = holder.turn.apply([self.at_m[0], self.at_m[1]]);
+        let at_m = [holder.at_m[0] + dx, holder.at_m[1] + dy, holder.at_m[2] + self.at_m[2]];
+        Some(Block::of(self.size_m, at_m, self.turn))
+    }
+}
+
+/// The room.
+#[derive(Clone, Debug)]
+pub struct Site<'a> {
+    pub catalog: &'a Catalog,
+    pub rects: Vec<Rect>,
+    pub walls: Vec<Wall>,
+    /// What must stay free: before doors, in windows, before switches.
+    pub kept_free: Vec<Block>,
+    pub ground: Ground,
+    pub placed: Vec<Placed>,
+}
+
+impl<'a> Site<'a> {
+    /// An empty room with doors at these places of its walls.
+    pub fn new(catalog: &'a Catalog, rects: &[Rect], doors: &[(Wall, i32)], kept_free: Vec<Block>) -> Self {
+        Self {
+            catalog,
+            rects: rects.to_vec(),
+            walls: walls(rects),
+            kept_free,
+            ground: Ground::new(rects, doors),
+            placed: Vec::new(),
+        }
+    }
+
+    /// Its floor, m².
+    pub fn area_m2(&self) -> f32 {
+        self.rects.iter().map(|rect| rect.area_m2()).sum()
+    }
+
+    /// Puts an arrangement down, if there is room for it and all stays in reach; says whether it did.
+    pub fn try_place(&mut self, arrangement: &Arrangement, origin_m: [f32; 3], turn: Turn) -> bool {
+        let pieces = self.in_room(arrangement, origin_m, turn);
+        let all: Vec<Placed> = self.placed.iter().chain(&pieces).cloned().collect();
+        let filled = |piece: &Placed| piece.filled(&all);
+        if !pieces.iter().filter_map(filled).all(|block| self.has_room(&block)) {
+            return false;
+        }
+        let blocks: Vec<Block> = pieces.iter().filter_map(Placed::block).collect();
+        let usables: Vec<Usable> = pieces.iter().filter_map(|piece| self.usable(piece)).collect();
+        if !self.ground.try_add(&blocks, &usables) {
+            return false;
+        }
+        self.placed.extend(pieces);
+        true
+    }
+
+    fn in_room(&self, arrangement: &Arrangement, [x, y, z]: [f32; 3], turn: Turn) -> Vec<Placed> {
+        let first = self.placed.len();
+        let placed = arrangement.pieces.iter().map(|piece| {
+            let at_m = if piece.on.is_some() {
+                piece.at_m
+            } else {
+                let [dx, dy] = turn.apply([piece.at_m[0], piece.at_m[1]]);
+                [x + dx, y + dy, z + piece.at_m[2]]
+            };
+            Placed {
+                class: piece.class,
+                at_m: at_m.map(rounded),
+                turn: turn.then(piece.turn),
+                on: piece.on.map(|on| first + on),
+                works: piece.works.map(|works| first + works),
+                size_m: piece.size_m,
+            }
+        });
+        placed.collect()
+    }
+
+    /// Whether a box is within the walls and in nobody's way.
+    fn has_room(&self, block: &Block) -> bool {
+        let margin_m = HALF_WALL_M - SLACK_M / 2.0;
+        block.corners().into_iter().all(|corner| is_clear(&self.rects, corner, margin_m))
+            && block.high[2] <= WALL_HEIGHT_M
+            && !self.kept_free.iter().any(|free| free.overlaps(block))
+            && !self.filled().any(|other| other.overlaps(&block.grown(APART_M)))
+    }
+
+    /// What all that is there fills.
+    pub fn filled(&self) -> impl Iterator<Item = Block> + '_ {
+        self.placed.iter().filter_map(|placed| placed.filled(&self.placed))
+    }
+
+    fn usable(&self, piece: &Placed) -> Option<Usable> {
+        let class = self.catalog.class(piece.class);
+        let block = piece.block().filter(|_| is_operable(class))?;
+        Some(Usable { block, front: is_used_from_its_front(class).then_some(piece.turn) })
+    }
+}
+
+/// Whether it does something or takes something.
+fn is_operable(class: &ObjectClass) -> bool {
+    use Property::{Openable, Powerable, Receptacle, Toggleable, Usable};
+    [Openable, Powerable, Receptacle, Toggleable, Usable].into_iter().any(|property| class.has(property))
+}
+
+/// Whether its doors, shelves or buttons are on one side: a table is used from all of them.
+fn is_used_from_its_front(class: &ObjectClass) -> bool {
+    /// A handle so far before the middle is at the front, m.
+    const FORWARD_M: f32 = 0.05;
+    let is_enclosed = class.receptacle.as_ref().is_some_and(|receptacle| receptacle.enclosed);
+    let has_handle = class.handle_m.is_some_and(|handle| handle[0] > FORWARD_M);
+    is_enclosed || has_handle || class.stands == cohabit_cdf::catalog::Stands::OnWall
+}

@@ -1,0 +1,299 @@
+//! Small things on and in furniture, by the table in `data/things.toml`.
+
+use cohabit_cdf::{
+    Catalog, ClassId, ObjectClass, RoomId,
+    catalog::{Receptacle, Surface},
+};
+use serde::Deserialize;
+
+use crate::{chance::Chance, furniture::Placed, geometry::Block};
+
+/// Half the width of what stands on an anchor, m, as plans are checked by.
+const ANCHOR_M: f32 = 0.06;
+/// Between two things on a surface, m.
+const APART_M: f32 = 0.01;
+/// The largest turn of a thing against its holder, degrees, beside quarter turns; and its sine.
+const TURN_DEG: i32 = 12;
+const TURN_SINE: f32 = 0.208;
+/// Places that are tried for a thing.
+const TRIES: usize = 12;
+
+/// What is on and in furniture.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ThingTable {
+    #[serde(rename = "on")]
+    entries: Vec<Entry>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    holders: Vec<String>,
+    /// All of them, if empty.
+    #[serde(default)]
+    rooms: Vec<RoomId>,
+    count: [usize; 2],
+    /// Whether these are what a holder with keys takes.
+    #[serde(default)]
+    keys: bool,
+    things: Vec<Prior>,
+}
+
+/// How likely something is there.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Prior {
+    any: Vec<String>,
+    weight: f32,
+    #[serde(default = "one")]
+    most: usize,
+}
+
+const fn one() -> usize {
+    1
+}
+
+/// A small thing on or in a piece of furniture.
+#[derive(Clone, Debug)]
+pub struct Thing {
+    pub class: ClassId,
+    /// What it is on or in, by its place among the furniture of the room.
+    pub holder: usize,
+    /// Where, in the frame of its holder, m; at the next free anchor, if absent.
+    pub at_m: Option<[f32; 3]>,
+    /// Its yaw in the world, degrees.
+    pub yaw_deg: f32,
+}
+
+/// A level rectangle in the frame of a holder: what a thing covers.
+#[derive(Clone, Copy, Debug)]
+struct Cover {
+    middle: [f32; 2],
+    half: [f32; 2],
+    height_m: f32,
+}
+
+impl ThingTable {
+    pub fn builtin() -> Self {
+        toml::from_str(include_str!("../data/things.toml")).expect("invariant: the table of things parses")
+    }
+
+    /// What is on a class of furniture in a room.
+    fn entry(&self, holder: &str, room: RoomId) -> Option<&Entry> {
+        let is_meant = |entry: &&Entry| {
+            entry.holders.iter().any(|class| class == holder) && (entry.rooms.is_empty() || entry.rooms.contains(&room))
+        };
+        self.entries.iter().find(is_meant)
+    }
+
+    /// Draws what is on and in the furniture of a room.
+    pub fn fill(&self, furniture: &[Placed], room: RoomId, catalog: &Catalog, chance: &mut Chance) -> Vec<Thing> {
+        let mut things = Vec::new();
+        for (index, placed) in furniture.iter().enumerate() {
+            let class = catalog.class(placed.class);
+            let Some(receptacle) = &class.receptacle else { continue };
+            let Some(entry) = self.entry(&class.id, room).filter(|entry| entry.keys != receptacle.keys.is_empty())
+            else {
+                continue;
+            };
+            let covers: Vec<Cover> = furniture.iter().filter_map(|other| cover_of(other, index, placed)).collect();
+            let others = furniture.iter().enumerate().filter(|(other, _)| *other != index);
+            let around = others.filter_map(|(_, other)| other.filled(furniture)).collect();
+            let holder = Holder { index, placed, receptacle, around, catalog };
+            things.extend(holder.fill(entry, covers, chance));
+        }
+        things
+    }
+}
+
+/// What a piece of furniture covers of the one that it stands on.
+fn cover_of(piece: &Placed, holder: usize, placed: &Placed) -> Option<Cover> {
+    (piece.on == Some(holder)).then(|| {
+        let turn = placed.turn.inverse().then(piece.turn);
+        let half = turn.size([piece.size_m[0] / 2.0, piece.size_m[1] / 2.0]);
+        Cover { middle: [piece.at_m[0], piece.at_m[1]], half, height_m: piece.at_m[2] }
+    })
+}
+
+/// A piece of furniture that takes things.
+struct Holder<'a> {
+    index: usize,
+    placed: &'a Placed,
+    receptacle: &'a Receptacle,
+    /// What all other furniture fills.
+    around: Vec<Block>,
+    catalog: &'a Catalog,
+}
+
+impl Holder<'_> {
+    fn fill(&self, entry: &Entry, mut covers: Vec<Cover>, chance: &mut Chance) -> Vec<Thing> {
+        let (mut things, mut drawn) = (Vec::new(), vec![0; entry.things.len()]);
+        let wanted = entry.count[0] + chance.below(entry.count[1] + 1 - entry.count[0]);
+        for _ in 0..wanted {
+            let weights: Vec<f32> = (entry.things.iter().zip(&drawn))
+                .map(|(prior, drawn)| if *drawn < prior.most { prior.weight } else { 0.0 })
+                .collect();
+            if weights.iter().all(|weight| *weight == 0.0) {
+                break;
+            }
+            let kind = chance.weighted(weights.iter().copied());
+            drawn[kind] += 1;
+            let class = chance.pick(&entry.things[kind].any).and_then(|id| self.catalog.find(id));
+            let Some(class) = class else { continue };
+            let thing = if self.has_anchors_alone() {
+                self.at_anchor(class, things.len(), wanted)
+            } else {
+                self.somewhere(class, &mut covers, chance)
+            };
+            things.extend(thing);
+        }
+        things
+    }
+
+    /// Whether things are put at its anchors: it is shut, takes keys, or its places lie otherwise in a mirror.
+    fn has_anchors_alone(&self) -> bool {
+        let Receptacle { enclosed, keys, surfaces, .. } = self.receptacle;
+        *enclosed || !keys.is_empty() || surfaces.iter().any(|surface| surface.center_m[1] != 0.0)
+    }
+
+    /// How many of its anchors may be taken: half of them stay free for missions.
+    fn most_taken(&self) -> usize {
+        let anchors =
+            self.receptacle.surfaces.iter().map(|surface| surface.anchors[0] * surface.anchors[1]).sum::<u32>();
+        if anchors <= 1 || !self.receptacle.keys.is_empty() { anchors as usize } else { anchors as usize / 2 }
+    }
+
+    fn at_anchor(&self, class: ClassId, taken: usize, wanted: usize) -> Option<Thing> {
+        let is_alone = wanted == 1 || !self.receptacle.keys.is_empty();
+        let kind = self.catalog.class(class);
+        let fits =
+            |quarter: bool| self.receptacle.surfaces.iter().all(|surface| is_fit(kind, surface, quarter, is_alone));
+        let quarter = [false, true].into_iter().find(|quarter| fits(*quarter))?;
+        let yaw_deg = self.placed.turn.yaw_deg() + if quarter { 90.0 } else { 0.0 };
+        (taken < self.most_taken()).then(|| Thing {
+            class,
+            holder: self.index,
+            at_m: None,
+            yaw_deg: within_turn(yaw_deg),
+        })
+    }
+
+    /// A free place on one of its surfaces.
+    fn somewhere(&self, class: ClassId, covers: &mut Vec<Cover>, chance: &mut Chance) -> Option<Thing> {
+        let kind = self.catalog.class(class);
+        for _ in 0..TRIES {
+            let surface = chance.pick(&self.receptacle.surfaces)?;
+            let (quarter, aside_deg) = (chance.below(4) as i32, chance.whole(-TURN_DEG, TURN_DEG));
+            let [depth, width, height] = kind.size_m;
+            let [depth, width] = if quarter % 2 == 0 { [depth, width] } else { [width, depth] };
+            let half = [depth + width * TURN_SINE, width + depth * TURN_SINE].map(|side| side / 2.0);
+            if height > surface.clearance_m || (0..2).any(|axis| half[axis] * 2.0 > surface.size_m[axis]) {
+                continue;
+            }
+            let at = |axis: usize, chance: &mut Chance| {
+                let aside = surface.size_m[axis] / 2.0 - half[axis];
+                ((surface.center_m[axis] + chance.between(-aside, aside)) * 100.0).round() / 100.0
+            };
+            let cover = Cover { middle: [at(0, chance), at(1, chance)], half, height_m: surface.center_m[2] };
+            let is_taken = covers.iter().any(|other| cover.touches(other)) || self.is_behind_something(cover, height);
+            if is_taken || self.is_crowded(covers, cover) {
+                continue;
+            }
+            covers.push(cover);
+            let at_m = Some([cover.middle[0], cover.middle[1], cover.height_m]);
+            let yaw_deg = within_turn(self.placed.turn.yaw_deg() + (quarter * 90 + aside_deg) as f32);
+            return Some(Thing { class, holder: self.index, at_m, yaw_deg });
+        }
+        None
+    }
+
+    /// Whether what hangs above or stands beside the holder is where a thing of this height would be.
+    fn is_behind_something(&self, cover: Cover, height_m: f32) -> bool {
+        let [x, y, z] = self.placed.at_m;
+        let [dx, dy] = self.placed.turn.apply(cover.middle);
+        let size_m = [cover.half[0] * 2.0, cover.half[1] * 2.0, height_m];
+        let block = Block::of(size_m, [x + dx, y + dy, z + cover.height_m], self.placed.turn);
+        self.around.iter().any(|other| other.overlaps(&block.grown(APART_M)))
+    }
+
+    /// Whether more than half of the anchors would be covered.
+    fn is_crowded(&self, covers: &[Cover], more: Cover) -> bool {
+        let anchors = self.receptacle.surfaces.iter().flat_map(anchors);
+        let is_covered = |at: &[f32; 3]| covers.iter().chain([&more]).any(|cover| cover.has_anchor(*at));
+        anchors.filter(is_covered).count() > self.most_taken()
+    }
+}
+
+/// Whether a thing fits on each anchor of a surface, turned by a quarter or not, beside its like.
+fn is_fit(kind: &ObjectClass, surface: &Surface, quarter: bool, is_alone: bool) -> bool {
+    let [depth, width, height] = kind.size_m;
+    let sides = if quarter { [width, depth] } else { [depth, width] };
+    let places = if is_alone { [1, 1] } else { surface.anchors };
+    let is_beside = (0..2).all(|axis| sides[axis] <= surface.size_m[axis] / places[axis] as f32 + ANCHOR_M / 2.0);
+    height <= surface.clearance_m && is_beside
+}
+
+/// The anchors of a surface.
+fn anchors(surface: &Surface) -> impl Iterator<Item = [f32; 3]> + '_ {
+    let along = |axis: usize, index: u32| {
+        let share = (index as f32 + 0.5) / surface.anchors[axis] as f32 - 0.5;
+        surface.center_m[axis] + surface.size_m[axis] * share
+    };
+    let all = (0..surface.anchors[0]).flat_map(|x| (0..surface.anchors[1]).map(move |y| (x, y)));
+    all.map(move |(x, y)| [along(0, x), along(1, y), surface.center_m[2]])
+}
+
+impl Cover {
+    fn touches(&self, other: &Self) -> bool {
+        let is_near =
+            |axis: usize| (self.middle[axis] - other.middle[axis]).abs() < self.half[axis] + other.half[axis] + APART_M;
+        self.is_level(other.height_m) && is_near(0) && is_near(1)
+    }
+
+    fn has_anchor(&self, [x, y, z]: [f32; 3]) -> bool {
+        let is_over = |axis: usize, at: f32| (self.middle[axis] - at).abs() < self.half[axis] + ANCHOR_M;
+        self.is_level(z) && is_over(0, x) && is_over(1, y)
+    }
+
+    fn is_level(&self, height_m: f32) -> bool {
+        (self.height_m - height_m).abs() < 0.02
+    }
+}
+
+/// The same yaw from -180 to 180 degrees.
+fn within_turn(yaw_deg: f32) -> f32 {
+    let yaw_deg = yaw_deg % 360.0;
+    if yaw_deg > 180.0 {
+        yaw_deg - 360.0
+    } else if yaw_deg <= -180.0 {
+        yaw_deg + 360.0
+    } else {
+        yaw_deg
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_that_the_table_names_is_there_and_fits_somewhere() {
+        let (catalog, table) = (Catalog::builtin(), ThingTable::builtin());
+        for entry in &table.entries {
+            for holder in &entry.holders {
+                let class = catalog.class(catalog.find(holder).unwrap());
+                let receptacle = class.receptacle.as_ref().unwrap();
+                for id in entry.things.iter().flat_map(|prior| &prior.any) {
+                    let thing = catalog.class(catalog.find(id).unwrap_or_else(|| panic!("there is no `{id}`")));
+                    let is_fit = |surface: &Surface| {
+                        [false, true].into_iter().any(|quarter| is_fit(thing, surface, quarter, true))
+                    };
+                    assert!(receptacle.surfaces.iter().any(is_fit), "`{id}` does not fit on `{holder}`");
+                    assert_eq!(entry.keys, receptacle.keys.contains(id), "`{id}` and the keys of `{holder}`");
+                }
+            }
+        }
+    }
+}
