@@ -229,7 +229,7 @@ impl Context {
         let sought = search.as_ref().map(|_| reply::request_in_words(&request)).filter(|request| !request.is_empty());
         let is_done_first = search.as_ref().is_none_or(|search| !search.is_under_way());
         let first = (is_done_first || sought.is_none()).then(|| reply::plan_in_words(steps));
-        let then = sought.iter().chain(&later).map(|text| format!("\"{text}\""));
+        let then = sought.iter().chain(&later).map(|text| prose::doing(text));
         let name = prose::list(&first.into_iter().chain(then).collect::<Vec<_>>(), "and then");
         Guess { name, steps: steps.to_vec(), search, later, request, reason }
     }
@@ -295,7 +295,7 @@ mod tests {
         (looking.search, looking.later) = (Some(Search::new(Vec::new(), Consent::default())), vec!["stop".to_owned()]);
         looking.request = vec![Clause::find(Phrase { text: "the mug".to_owned(), ..Phrase::default() })];
         let guess = looking.guess(&steps);
-        assert_eq!(guess.name, "looking around, \"find the mug\" and then \"stop\"", "all that is to follow is named");
+        assert_eq!(guess.name, "looking around, finding the mug and then stopping", "all that is to follow is named");
         let mut asked = Context::default();
         asked.begin_guessed(guess);
         assert_eq!(asked.planned_for, "you asked me to mend the mug");

@@ -105,7 +105,7 @@ fn two_questions_get_two_answers() {
 fn a_question_with_words_before_it_is_not_carried_out() {
     for said in ["nah man the plate, is the plate clean", "the fridge, is it open", "why not?"] {
         let done = carried_out(&mut Talk::new(&[]), said);
-        assert!(done.len() == 1 && done[0].starts_with('='), "{said}: {done:?}");
+        assert!(done.len() == 1 && done[0].starts_with(['=', '?']), "{said}: {done:?}");
     }
 }
 

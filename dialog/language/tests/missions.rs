@@ -109,7 +109,9 @@ fn utterances_of_real_missions_are_understood() {
         for utterance in strings(line, "preparation_utterances").into_iter().chain(strings(line, "utterances")) {
             said += 1;
             let understanding = talk.play(&utterance);
-            if matches!(understanding, Understanding::Plan { .. }) {
+            // The warehouse's cabinets stand open.
+            let is_met = text(&understanding, &talk.scene).ends_with("is already open.");
+            if is_met || matches!(understanding, Understanding::Plan { .. }) {
                 planned += 1;
             } else {
                 *rest.entry(format!("{utterance}: {}", text(&understanding, &talk.scene))).or_default() += 1;

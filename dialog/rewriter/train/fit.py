@@ -29,8 +29,6 @@ SEED = 1
 #: How many utterances a batch has, on a CPU and on a GPU.
 BATCH, GPU_BATCH = 32, 128
 BATCHES_AHEAD, WARM_UP = 12, 60
-#: The share of the time after which the model computes with its weights as they are rounded in the end.
-ROUNDED_AFTER = 0.6
 #: The length of rows of a batch is a multiple of this, so that memory is asked for in few sizes.
 LENGTH_STEP = 16
 MOST_WRITTEN = 70
@@ -50,7 +48,7 @@ PARTICIPANTS = corpus.CRATE.parent / "language/tests/participants"
 TALKS = [*sorted(PARTICIPANTS.glob("*.txt")), *sorted((corpus.CRATE / "corpus/talks").glob("*.txt"))]
 #: Nothing is fitted to these talks and writers: they are to measure with.
 UNSEEN_TALKS = {"oona", "bram", "sofia", "niamh", "piotr", "winifred", "bernard", "vikram"}
-UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd fm fn fo".split())
+UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd fm fn fo gs gt gu".split())
 
 
 def main():
@@ -58,6 +56,7 @@ def main():
     options.add_argument("--minutes", type=float, default=90, help="how long to train")
     options.add_argument("--rate", type=float, default=4e-4, help="the highest rate of learning")
     options.add_argument("--dropout", type=float, default=0.0, help="how much of what a layer adds is left out while it learns")
+    options.add_argument("--rounded-after", type=float, default=0.6, help="the share of the time after which it computes with its weights as they are rounded in the end")
     options.add_argument("--seed", type=int, default=SEED, help="what is drawn by chance")
     options.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu", help="cpu or cuda")
     options.add_argument("--compile", action="store_true", help="compile the layers first: a fifth faster, and needs a C++ compiler")
@@ -253,7 +252,7 @@ def train(model, given):
         done = (time.monotonic() - begun) / (60 * given.minutes)
         if done >= 1:
             break
-        if done >= ROUNDED_AFTER:
+        if done >= given.rounded_after:
             set_rounded(model, True)
         for group in optimizer.param_groups:
             group["lr"] = given.rate * min(1, step / WARM_UP) * max(0.02, 1 - done)

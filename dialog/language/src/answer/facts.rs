@@ -68,7 +68,8 @@ impl Facts<'_> {
 
     /// What a kind of thing is for, where that is known.
     pub(crate) fn purpose_of_kind(&self, class: ClassId) -> Option<String> {
-        let does = self.devices.uses.of(class)?;
+        let belongs = || Some(format!("belongs in the {}", describe::name(self.catalog, self.key_of(class)?)));
+        let does = self.devices.uses.of(class).map(str::to_owned).or_else(belongs)?;
         let name = prose::indefinite(&describe::name(self.catalog, class));
         Some(prose::sentence(&format!("{name} {does}")))
     }
@@ -194,6 +195,7 @@ impl Facts<'_> {
             return Some(format!("{the} throws sparks: who touches it now is killed"));
         }
         let warns = |text: &str| self.devices.uses.of(object.class).is_some_and(|does| does.contains(text));
-        warns("deadly").then(|| format!("{the} {}", self.devices.uses.of(object.class).unwrap_or_default()))
+        (warns("deadly") || warns("beam"))
+            .then(|| format!("{the} {}", self.devices.uses.of(object.class).unwrap_or_default()))
     }
 }

@@ -5,7 +5,7 @@ use cohabit_cdf::{ObjectId, Property, RoomId};
 use crate::{
     answer::{Answerer, NEIGHBOURS},
     ground::{self, want::Want},
-    known::{KnownObject, contents, describe, floor},
+    known::{KnownObject, contents, describe, floor, memory},
     read::phrase::Phrase,
     say::reply::HINT,
     understanding::Understanding,
@@ -131,6 +131,9 @@ impl Answerer<'_> {
         if let Some(note) = self.scene.object(id).filter(|object| !object.text.is_empty()) {
             return self.read_out(note);
         }
+        if let Some(shut) = self.unopened(id) {
+            return shut;
+        }
         let place = self.short(id);
         if let Some(filling) = self.fillings(id) {
             return Understanding::whether(true, format!("There is {filling} in {place}."), vec![id]);
@@ -155,6 +158,14 @@ impl Answerer<'_> {
                 Understanding::whether(false, format!("I know of nothing {preposition} {place}."), Vec::new())
             }
         }
+    }
+
+    /// That nobody has looked into a thing, which is shut, and an offer to.
+    fn unopened(&self, id: ObjectId) -> Option<Understanding> {
+        let is_shut = self.scene.object(id).is_some_and(|object| memory::is_shut(self.catalog, object));
+        let the = self.short(id);
+        let text = format!("{} I have not looked into it yet. Shall I?", prose::sentence(&format!("{the} is closed")));
+        (is_shut && self.scene.floor.is_some()).then(|| crate::say::ask::confirmation(text))
     }
 
     /// What is next to a thing, the nearest first.

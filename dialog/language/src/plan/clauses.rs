@@ -12,7 +12,7 @@ use crate::{
     read::{
         clause::Clause,
         phrase::{Phrase, Place},
-        slot::Role,
+        slot::{self, Role},
     },
     say::report,
     words::{
@@ -21,20 +21,44 @@ use crate::{
     },
 };
 
+/// Whether a clause has nothing to do with those beside it: where it cannot be done, they can.
+fn is_apart(clauses: &[Clause], index: usize) -> bool {
+    let own = slot::named(&clauses[index]);
+    let says_it = |phrase: &&Phrase| phrase.pronoun.is_some();
+    let others = || clauses.iter().enumerate().filter(|(at, _)| *at != index).map(|(_, clause)| clause);
+    let shares = |clause: &Clause| slot::named(clause).iter().any(|other| own.iter().any(|one| one.text == other.text));
+    let refers_back = clauses[index + 1..].iter().any(|clause| slot::named(clause).iter().any(says_it));
+    let is_deed = |clause: &Clause| clause.intent != Intent::Mention;
+    others().any(is_deed) && !own.is_empty() && !own.iter().any(says_it) && !refers_back && !others().any(shares)
+}
+
 impl Planner<'_> {
     /// Adds the steps of all clauses.
     pub(crate) fn run(&mut self, clauses: &[Clause]) -> Result<(), Fault> {
+        let mut impossible: Vec<String> = Vec::new();
         for (index, clause) in clauses.iter().enumerate() {
             self.clause = index;
             self.begun = (self.steps.len(), self.focus.clone());
-            let before = clause.is_means.then(|| self.scene.clone());
+            let is_apart = is_apart(clauses, index);
+            let before = (clause.is_means || is_apart).then(|| self.scene.clone());
             match (self.add(clause), clauses.get(index + 1)) {
                 // `take it, take the knife`: what was meant was said at once.
                 (Err(Fault::Miss { miss: Miss::NoReferent, .. }), Some(next)) if next.intent == clause.intent => {}
+                (Err(Fault::Cannot(why)), _) if is_apart => {
+                    self.steps.truncate(self.begun.0);
+                    self.focus = self.begun.1.clone();
+                    before.into_iter().for_each(|scene| self.scene = scene);
+                    impossible.push(why);
+                    continue;
+                }
                 (result, _) => result?,
             }
-            before.into_iter().for_each(|scene| self.drop_known_means(scene));
+            before.filter(|_| clause.is_means).into_iter().for_each(|scene| self.drop_known_means(scene));
         }
+        if !impossible.is_empty() && self.steps.is_empty() {
+            return Err(Fault::Cannot(impossible.join(" ")));
+        }
+        self.notes.extend(impossible.iter().map(|why| why.trim_end_matches('.').to_owned()));
         Ok(())
     }
 

@@ -71,7 +71,7 @@ fn interaction(
         Verb::Break => format!("{the} is broken"),
         Verb::Scan => format!("I have scanned {the}"),
         Verb::Pour => format!("I have poured it into {the}"),
-        Verb::Toggle => toggled(the, devices, scene, step, object),
+        Verb::Toggle => toggled(the, catalog, devices, scene, step, object),
         Verb::Throw => format!("I have thrown it at {the}"),
         Verb::Fill => "it is full now".to_owned(),
         Verb::Clean => "it is clean now".to_owned(),
@@ -82,13 +82,13 @@ fn interaction(
         Verb::Examine => match scene.object(object).filter(|object| !object.text.is_empty()) {
             Some(object) => format!("it says: \"{}\"", object.text),
             None => contents::inside(catalog, scene, object, 0)
-                .unwrap_or_else(|| format!("I have had a close look at {the}")),
+                .unwrap_or_else(|| format!("I have had a close look at {the}, and there is nothing to read on it")),
         },
     }
 }
 
-/// What was switched, and that it is on where it stays so.
-fn toggled(the: &str, devices: &Devices, scene: &Known, step: &Step, id: ObjectId) -> String {
+/// What was switched, what that works, and that it is on where it stays so.
+fn toggled(the: &str, catalog: &Catalog, devices: &Devices, scene: &Known, step: &Step, id: ObjectId) -> String {
     let device = scene.object(id).and_then(|object| object.works);
     let is_on = [Some(id), device]
         .into_iter()
@@ -98,9 +98,10 @@ fn toggled(the: &str, devices: &Devices, scene: &Known, step: &Step, id: ObjectI
     let did = [("turning on", "turned on"), ("turning off", "turned off"), ("pressing", "pressed")]
         .into_iter()
         .find_map(|(doing, done)| step.says.starts_with(doing).then_some(done));
+    let works = device.map_or_else(String::new, |id| format!(", which works {}", describe::short(catalog, scene, id)));
     match did {
         Some("turned on") | None if is_on => format!("{the} is on"),
-        done => format!("I have {} {the}", done.unwrap_or("switched")),
+        done => format!("I have {} {the}{works}", done.unwrap_or("switched")),
     }
 }
 

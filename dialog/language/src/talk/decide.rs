@@ -120,8 +120,8 @@ impl Conversation<'_> {
             && let Some((begun, more)) = begun(&ways)
         {
             let (understanding, probability) = begun.taken(context);
-            // Nobody wants a question that they never asked.
-            if more.contains('?') {
+            // Nobody wants a question that they never asked, and what is not to be done is not done.
+            if more.contains('?') || more.starts_with("not ") {
                 return (understanding, probability);
             }
             let left = format!("I am not sure about {more}: tell me if you want that, too.");
@@ -223,6 +223,10 @@ impl Conversation<'_> {
             return (likeliest.probability >= TO_GUESS).then(|| likeliest.taken(context).0);
         }
         let is_rival = |way: &Way| {
+            // To look for what is known already is no other plan.
+            if likeliest.context.search.is_none() && way.context.search.is_some() {
+                return false;
+            }
             let is_part = likeliest.beyond(way).is_some() || way.beyond(likeliest).is_some();
             way.probability >= likeliest.probability * RIVAL && !is_part
         };

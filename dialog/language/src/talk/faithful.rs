@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::{ObjectClass, Property};
+use cohabit_cdf::{ObjectClass, Property, RoomId};
 
 use crate::{
     read::{question, whether},
@@ -43,6 +43,8 @@ pub(crate) struct Source {
     has_condition: bool,
     /// Whether it is about this room.
     is_here: bool,
+    /// The rooms that were named, now or before.
+    rooms: Vec<RoomId>,
 }
 
 impl Source {
@@ -55,6 +57,7 @@ impl Source {
             is_denied: denies_condition(lexicon, said),
             only_asks: only_asks(lexicon, said),
             has_condition: condition::has_condition(lexicon, said),
+            rooms: before.iter().map(Vec::as_slice).chain([said]).flat_map(|words| rooms(lexicon, words)).collect(),
             is_here: HERE.iter().any(|here| format!(" {} ", said.join(" ")).contains(&format!(" {here} "))),
             has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
             words: said.iter().cloned().chain(before.into_iter().flatten()).collect(),
@@ -143,8 +146,20 @@ impl Conversation<'_> {
         let loses = source.has_condition && text.split("; ").all(is_free);
         let adds = !source.has_denial && !denied.is_empty();
         let drops = source.is_denied && denied.is_empty() && claimed.iter().any(is_said);
-        let is_unfaithful = adds || drops || loses || turns_to_deed || self.lists_all(text, source);
+        let is_unfaithful = adds
+            || drops
+            || loses
+            || turns_to_deed
+            || self.lists_all(text, source)
+            || self.goes_elsewhere(text, source);
         if is_unfaithful { TURNED_ROUND } else { 1.0 }
+    }
+
+    /// Whether it goes to a room that nobody named: `go to Paris`.
+    fn goes_elsewhere(&self, text: &str, source: &Source) -> bool {
+        let trips = text.split("; ").filter(|request| request.starts_with("go to "));
+        let named = |request| rooms(self.lexicon, &token::words(request));
+        trips.flat_map(named).any(|room| !source.rooms.contains(&room))
     }
 
     /// Whether things that nobody named stand for all of a kind: which there are the rewriter does not know.
@@ -157,6 +172,11 @@ impl Conversation<'_> {
         };
         source.said.iter().any(says_all) && !words.iter().any(says_all) && (0..words.len()).any(is_unnamed)
     }
+}
+
+/// The rooms that words name.
+fn rooms(lexicon: &Lexicon, words: &[String]) -> Vec<RoomId> {
+    (0..words.len()).filter_map(|at| lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room)).collect()
 }
 
 /// Each two words that stand beside each other.

@@ -5,6 +5,7 @@ use cohabit_cdf::ObjectId;
 use crate::{
     answer::{Answerer, claim::asked_state},
     context::{Context, Pending, search::Consent},
+    ground::{focus::Focus, want::Want},
     known::{contents, memory},
     read::{clause::Clause, phrase::Phrase, question},
     say::reply,
@@ -74,6 +75,11 @@ impl Conversation<'_> {
         context.keep(vec![utterance.to_owned()], look.after("I have not looked at it since."))
     }
 
+    /// Whether it knows where such a thing is.
+    fn is_known(&self, phrase: &Phrase) -> bool {
+        self.ground(&Focus::default()).one(phrase, &Want::place(Intent::Find, &[], None)).is_ok()
+    }
+
     /// Answers a question, and remembers what it is about.
     pub(crate) fn answer(&self, question: &question::Question, context: &mut Context) -> Understanding {
         if question.kind == QuestionKind::HowTo && !question.rest.is_empty() {
@@ -92,8 +98,16 @@ impl Conversation<'_> {
         context.unwatched = self.unwatched(question, &answer, context);
         // Only what it has not seen makes it ask back.
         if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {
-            context.focus.unseen = Some(phrase.clone());
-            context.pending = Some(Pending::Search { clauses: vec![Clause::find(phrase.clone())] });
+            let clause = match question.kind {
+                QuestionKind::Contents if self.is_known(phrase) => {
+                    Clause::about(Intent::LookIn, "look in", phrase.clone())
+                }
+                _ => {
+                    context.focus.unseen = Some(phrase.clone());
+                    Clause::find(phrase.clone())
+                }
+            };
+            context.pending = Some(Pending::Search { clauses: vec![clause] });
         }
         if let Understanding::Answer { highlight, .. } = &answer {
             match highlight.as_slice() {

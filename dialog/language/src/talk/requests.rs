@@ -69,6 +69,10 @@ impl Conversation<'_> {
                     *context = then;
                 }
                 _ => {
+                    // `I have not seen it yet`, of each of two questions.
+                    if let Understanding::Question { text: asked, .. } = &understanding {
+                        said.retain(|known| *known != without_offer(asked));
+                    }
                     *context = then;
                     context.later.extend(texts);
                     context.answered = said.join(" ");

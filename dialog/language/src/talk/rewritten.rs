@@ -30,7 +30,7 @@ impl Conversation<'_> {
     /// What the rewriter takes an utterance for, the likeliest first; nothing, where the likeliest names something that nobody
     /// knows: others are mere guesses then.
     pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Way> {
-        let (mut ways, mut is_doubtful) = (Vec::<Way>::new(), false);
+        let (mut ways, mut is_doubtful, mut unread) = (Vec::<Way>::new(), false, 0.0);
         let around = self.around();
         let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
         for (at, (text, probability)) in self.rewritings(wording.utterance, context, &around).iter().enumerate() {
@@ -43,6 +43,7 @@ impl Conversation<'_> {
                 }
                 None => {
                     is_doubtful |= at == 0;
+                    unread += probability;
                     continue;
                 }
             };
@@ -55,7 +56,7 @@ impl Conversation<'_> {
         // Others may have said it otherwise: how likely one is meant follows more from its share of what is written, and only by its fourth root
         // from how likely that is, by writers that it was not fitted to.
         let most = if is_doubtful { DOUBTFUL } else { 1.0 };
-        let all: f32 = ways.iter().map(|way| way.probability).sum();
+        let all = ways.iter().map(|way| way.probability).sum::<f32>() + unread;
         for way in &mut ways {
             let share = way.probability / all.max(f32::MIN_POSITIVE);
             way.probability = (way.probability * share.powi(3)).sqrt().sqrt().min(most);

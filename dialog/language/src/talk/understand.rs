@@ -35,14 +35,26 @@ use crate::{
 
 /// What it says when it stops.
 const STOPS: &str = "OK, I stop.";
+/// What stands between two of which one is asked for, and what follows it where there is no second one: `is it hot or what?`
+const OR: &str = "or";
+const NO_SECOND: [&str; 5] = ["what", "not", "no", "?", "something"];
 
 impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
         context.unwatched = None;
         let (understanding, sureness) = self.understand_surely(utterance, context);
+        let understanding = if self.offers_two(utterance) { understanding.without_yes() } else { understanding };
         let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
         context.sureness = if is_lost { 0.0 } else { sureness };
         self.with_a_look(utterance, understanding, context)
+    }
+
+    /// Whether it asks which of two is so: no yes says that.
+    fn offers_two(&self, utterance: &str) -> bool {
+        let words = token::words(utterance);
+        let at = words.iter().position(|word| word == OR);
+        utterance.trim_end().ends_with('?')
+            && at.is_some_and(|at| words.get(at + 1).is_some_and(|next| !NO_SECOND.contains(&next.as_str())))
     }
 
     /// The same with how likely it is what was meant.

@@ -28,7 +28,8 @@ impl Way {
         let is_same = match (&self.understanding, &other.understanding) {
             (Understanding::Plan { .. }, Understanding::Plan { .. }) if self.looks() && other.looks() => true,
             (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) => {
-                deeds(one).eq(deeds(other))
+                let (own, others) = (outcome(one), outcome(other));
+                deeds(one).eq(deeds(other)) || !own.is_empty() && own == others && !self.context.later.is_empty()
             }
             (
                 Understanding::Answer { text: one, highlight, .. },
@@ -100,7 +101,7 @@ impl Way {
         let more = (last > 0).then(|| reply::plan_in_words(&steps[steps.len() - last..]));
         let sought = self.context.search.as_ref().map(|_| reply::request_in_words(&self.context.request));
         let later = self.context.later.strip_prefix(other.context.later.as_slice())?;
-        let after = sought.iter().chain(later).map(|text| format!("\"{text}\""));
+        let after = sought.iter().chain(later).map(|text| prose::doing(text));
         let rest: Vec<String> = more.into_iter().chain(after).collect();
         (!rest.is_empty()).then(|| prose::list(&rest, "and then"))
     }
@@ -167,6 +168,16 @@ impl Way {
         let is_sought = self.context.search.as_ref().is_some_and(|search| search.deeds().iter().any(is_lasting));
         is_sought || self.steps().is_some_and(|steps| steps.iter().any(Step::is_lasting))
     }
+}
+
+/// What is done but for doors, and for what is in the hand at the end: what follows takes what it needs.
+fn outcome(steps: &[Step]) -> Vec<&Action> {
+    let is_door = |action: &&Action| matches!(action, Action::Interact { verb: Verb::Open | Verb::Close, .. });
+    let mut done: Vec<&Action> = deeds(steps).filter(|action| !is_door(action)).collect();
+    if matches!(done.last(), Some(Action::PickUp { .. })) {
+        done.pop();
+    }
+    done
 }
 
 /// What these steps come to: who goes to a thing and then takes it, takes it.

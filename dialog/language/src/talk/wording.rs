@@ -13,7 +13,7 @@ use crate::{
     },
     talk::{condition, conversation::Conversation},
     understanding::Understanding,
-    words::{intent::Intent, question_kind::QuestionKind, spelling, token},
+    words::{intent::Intent, lexicon::Small, question_kind::QuestionKind, spelling, token},
 };
 
 /// An utterance and its words.
@@ -36,15 +36,27 @@ impl Conversation<'_> {
         Wording { utterance, words, tidied, unheard }
     }
 
+    /// What is said behind thanks or a greeting.
+    fn without_greeting<'w>(&self, words: &'w [String]) -> &'w [String] {
+        let is_greeting = |small: &Small| matches!(small, Small::Hello | Small::Thanks);
+        match words.iter().position(|word| token::ends_sentence(word)) {
+            Some(end) if end + 1 < words.len() && self.small(&words[..end]).iter().any(is_greeting) => {
+                &words[end + 1..]
+            }
+            _ => words,
+        }
+    }
+
     /// Whether the grammar reads it to the last word, as one that it knows: requests, or a question, or small talk.
     pub(crate) fn is_plain(&self, Wording { tidied, .. }: &Wording<'_>) -> bool {
         if !self.small(tidied).is_empty() || self.chat(tidied).is_some() {
             return true;
         }
-        // `did you close the fridge`
-        let answer = self.answered_yes_or_no(tidied, &mut Context::default());
+        // `thanks! did you close the fridge`
+        let asked = self.without_greeting(tidied);
+        let answer = self.answered_yes_or_no(asked, &mut Context::default());
         if matches!(answer, Some(Understanding::Answer { holds: Some(_), .. })) {
-            return !self.asks_beside(tidied);
+            return !self.asks_beside(asked);
         }
         if let Some(question) = question::read(self.lexicon, tidied) {
             let is_known = question.kind != QuestionKind::Unknown && knows_what_about(&question);

@@ -94,11 +94,64 @@ pub(crate) fn sentence(text: &str) -> String {
     format!("{}{}{ending}", first.to_uppercase(), characters.as_str())
 }
 
+/// What a request asks for, as a part of a sentence: `pour the milk. is it full?` → `pouring the milk and then answering "is it full?"`.
+pub(crate) fn doing(request: &str) -> String {
+    let parts: Vec<String> = request.split(". ").map(doing_one).collect();
+    list(&parts, "and then")
+}
+
+fn doing_one(request: &str) -> String {
+    if request.ends_with('?') {
+        return format!("answering \"{request}\"");
+    }
+    if let Some(request) = request.strip_prefix("do not ") {
+        return format!("not {}", doing_one(request));
+    }
+    let (verb, rest) = request.split_once(' ').unwrap_or((request, ""));
+    // A condition, or what is no request by itself.
+    if matches!(verb, "if" | "when" | "once" | "unless" | "until" | "wait") || verb.ends_with([',', ':']) {
+        return format!("\"{request}\"");
+    }
+    format!("{} {rest}", gerund(verb)).trim_end().to_owned()
+}
+
+/// `put` → `putting`, `close` → `closing`.
+fn gerund(verb: &str) -> String {
+    let is_vowel = |letter: char| "aeiou".contains(letter);
+    let letters: Vec<char> = verb.chars().collect();
+    let vowels = letters.iter().filter(|letter| is_vowel(**letter)).count();
+    match letters.as_slice() {
+        [.., before, 'e'] if *before != 'e' && vowels > 1 => format!("{}ing", &verb[..verb.len() - 1]),
+        [.., before, vowel, last]
+            if vowels == 1 && is_vowel(*vowel) && !is_vowel(*before) && !is_vowel(*last) && !"wxy".contains(*last) =>
+        {
+            format!("{verb}{last}ing")
+        }
+        _ => format!("{verb}ing"),
+    }
+}
+
 /// A sentence as the rest of another one: with a small letter at its start, unless that begins `I`.
 pub(crate) fn within_sentence(text: &str) -> String {
     let mut characters = text.chars();
     match characters.next() {
         Some(first) if !text.starts_with("I ") => first.to_lowercase().chain(characters).collect(),
         _ => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_is_told_as_what_is_done() {
+        let check = |request: &str, done: &str| assert_eq!(doing(request), done);
+        check("put the mug on the desk", "putting the mug on the desk");
+        check("close the fridge. wash the mug", "closing the fridge and then washing the mug");
+        check("do not open the fridge", "not opening the fridge");
+        check("go back", "going back");
+        check("is the laser on?", "answering \"is the laser on?\"");
+        check("if the mug is dirty, wash it", "\"if the mug is dirty, wash it\"");
     }
 }

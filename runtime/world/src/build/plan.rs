@@ -1,7 +1,7 @@
 //! The floor plan's own things: placed as it says, in the states that they are in on an ordinary day.
 
 use cohabit_cdf::{
-    Fluid, ObjectId, RoomId, StateFlag,
+    ObjectId, RoomId,
     layout::{OpeningKind, Placement},
 };
 use glam::{Quat, Vec3};
