@@ -153,7 +153,7 @@ class Samples:
         #: What may be said at the beginning, by what is around.
         self.beginnings = {}
         for around, before, said, labels, _ in self.written:
-            if not before and not {"?", "none"} & {surest(labels)}:
+            if not before and surest(labels) not in ("?", "none"):
                 self.beginnings.setdefault(around, []).append((said, labels))
 
     def batches(self, size):
@@ -188,7 +188,7 @@ class Samples:
     def with_another(self, around, said, label):
         """Two utterances in one message."""
         others = self.beginnings.get(around)
-        if not others or {"?", "none"} & {label}:
+        if not others or label in ("?", "none"):
             return said, label
         other, labels = self.random.choice(others)
         asked = [one for one in [label, surest(labels)] if one != "social"]

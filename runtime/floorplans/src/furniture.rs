@@ -5,7 +5,7 @@ mod furnish;
 mod site;
 mod table;
 
-pub use arrange::Arrangement;
+pub use arrange::{Arrangement, Placed};
 pub use furnish::{against, furnish};
-pub use site::{Placed, Site, WALL_HEIGHT_M};
+pub use site::{Site, WALL_HEIGHT_M};
 pub use table::{FurnitureTable, Part, Set};

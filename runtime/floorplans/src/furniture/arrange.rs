@@ -8,31 +8,40 @@ use crate::{
     geometry::{Block, Turn},
 };
 
-/// A part in its place.
+/// Something in its place.
 #[derive(Clone, Debug)]
-pub struct Piece {
+pub struct Placed {
     pub class: ClassId,
-    /// The middle of its foot, m: told from the first part, or in the frame of what it stands on.
+    /// The middle of its foot, m: told from the first part of its set, in the world once it is in a room, or in the frame of what it stands on.
     pub at_m: [f32; 3],
     pub turn: Turn,
-    /// The piece that it stands on.
+    /// What it stands on, by its place in the list.
     pub on: Option<usize>,
-    /// The piece that its device works from or on.
+    /// What its device works from or on.
     pub works: Option<usize>,
     pub size_m: [f32; 3],
 }
 
-impl Piece {
-    /// What it fills, if it stands on no other piece.
+impl Placed {
+    /// What it fills, if it stands on nothing else.
     pub fn block(&self) -> Option<Block> {
         self.on.is_none().then(|| Block::of(self.size_m, self.at_m, self.turn))
+    }
+
+    /// What it fills, also if it stands on another one of these; nothing, if that one stands on yet another.
+    pub fn filled(&self, all: &[Self]) -> Option<Block> {
+        let Some(holder) = self.on else { return self.block() };
+        let holder = all.get(holder).filter(|holder| holder.on.is_none())?;
+        let [dx, dy] = holder.turn.apply([self.at_m[0], self.at_m[1]]);
+        let at_m = [holder.at_m[0] + dx, holder.at_m[1] + dy, holder.at_m[2] + self.at_m[2]];
+        Some(Block::of(self.size_m, at_m, self.turn))
     }
 }
 
 /// The pieces of a set that are there, in an order in which holders come first.
 #[derive(Clone, Debug)]
 pub struct Arrangement {
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<Placed>,
     /// The rectangle around all that stands on no other piece.
     pub bounds: Block,
 }
@@ -40,7 +49,7 @@ pub struct Arrangement {
 impl Arrangement {
     /// Draws classes and parts of a set.
     pub fn draw(set: &Set, catalog: &Catalog, chance: &mut Chance) -> Option<Self> {
-        let mut pieces: Vec<Piece> = Vec::new();
+        let mut pieces: Vec<Placed> = Vec::new();
         // The piece of each part; none, if the part is left out.
         let mut piece_of: Vec<Option<usize>> = Vec::new();
         let is_mirrored = chance.is(0.5);
@@ -56,7 +65,7 @@ impl Arrangement {
             let size_m = catalog.class(class).size_m;
             let works = part.works.and_then(|other| piece_of.get(other).copied().flatten());
             let piece = match of {
-                None => Piece { class, at_m: [0.0; 3], turn: Turn::EAST, on: None, works, size_m },
+                None => Placed { class, at_m: [0.0; 3], turn: Turn::EAST, on: None, works, size_m },
                 Some(of) => placed(part, class, size_m, of, &pieces, catalog, works),
             };
             piece_of.push(Some(pieces.len()));
@@ -78,8 +87,8 @@ impl Arrangement {
     }
 }
 
-fn bounds(pieces: &[Piece]) -> Option<Block> {
-    pieces.iter().filter_map(Piece::block).reduce(|one, other| Block {
+fn bounds(pieces: &[Placed]) -> Option<Block> {
+    pieces.iter().filter_map(Placed::block).reduce(|one, other| Block {
         low: [0, 1, 2].map(|axis| one.low[axis].min(other.low[axis])),
         high: [0, 1, 2].map(|axis| one.high[axis].max(other.high[axis])),
     })
@@ -91,19 +100,19 @@ fn placed(
     class: ClassId,
     size_m: [f32; 3],
     of: usize,
-    pieces: &[Piece],
+    pieces: &[Placed],
     catalog: &Catalog,
     works: Option<usize>,
-) -> Piece {
+) -> Placed {
     let other = &pieces[of];
     let turned = Turn::of_degrees(part.turn_deg);
     if part.on.is_some() {
         let height = top_m(catalog, other.class);
         let at_m = [part.at_m[0], part.at_m[1], height];
-        return Piece { class, at_m, turn: other.turn.then(turned), on: Some(of), works, size_m };
+        return Placed { class, at_m, turn: other.turn.then(turned), on: Some(of), works, size_m };
     }
     if let Some(at_m) = part.button_m {
-        return Piece { class, at_m, turn: Turn::EAST, on: None, works, size_m };
+        return Placed { class, at_m, turn: Turn::EAST, on: None, works, size_m };
     }
     let back_m = (size_m[0] - other.size_m[0]) / 2.0;
     let (offset, turn, height) = match (part.side, part.over_m) {
@@ -116,7 +125,7 @@ fn placed(
     };
     let [dx, dy] = other.turn.apply(offset);
     let at_m = [other.at_m[0] + dx, other.at_m[1] + dy, other.at_m[2] + height];
-    Piece { class, at_m, turn: other.turn.then(turn).then(turned), on: None, works, size_m }
+    Placed { class, at_m, turn: other.turn.then(turn).then(turned), on: None, works, size_m }
 }
 
 /// Where something of a size is beside another, in the other's frame, and its turn there.

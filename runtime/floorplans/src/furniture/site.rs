@@ -1,8 +1,8 @@
 //! A room that is being furnished: what is in it, and what must stay free.
 
-use cohabit_cdf::{Catalog, ClassId, ObjectClass, Property};
+use cohabit_cdf::{Catalog, ObjectClass, Property};
 
-use super::arrange::Arrangement;
+use super::arrange::{Arrangement, Placed};
 use crate::{
     geometry::{Block, HALF_WALL_M, Rect, Turn, Wall, is_clear, rounded, walls},
     ground::{Ground, Usable},
@@ -14,36 +14,6 @@ pub const WALL_HEIGHT_M: f32 = 2.8;
 const APART_M: f32 = 0.03;
 /// Rounding, m.
 const SLACK_M: f32 = 0.002;
-
-/// Something in its place in a room.
-#[derive(Clone, Debug)]
-pub struct Placed {
-    pub class: ClassId,
-    /// The middle of its foot, m: in the world, or in the frame of what it stands on.
-    pub at_m: [f32; 3],
-    pub turn: Turn,
-    /// What it stands on, by its place in the list.
-    pub on: Option<usize>,
-    /// What its device works from or on.
-    pub works: Option<usize>,
-    pub size_m: [f32; 3],
-}
-
-impl Placed {
-    /// What it fills, if it stands on nothing else.
-    pub fn block(&self) -> Option<Block> {
-        self.on.is_none().then(|| Block::of(self.size_m, self.at_m, self.turn))
-    }
-
-    /// What it fills, also if it stands on another one of these; nothing, if that one stands on yet another.
-    pub fn filled(&self, all: &[Self]) -> Option<Block> {
-        let Some(holder) = self.on else { return self.block() };
-        let holder = all.get(holder).filter(|holder| holder.on.is_none())?;
-        let [dx, dy] = holder.turn.apply([self.at_m[0], self.at_m[1]]);
-        let at_m = [holder.at_m[0] + dx, holder.at_m[1] + dy, holder.at_m[2] + self.at_m[2]];
-        Some(Block::of(self.size_m, at_m, self.turn))
-    }
-}
 
 /// The room.
 #[derive(Clone, Debug)]
@@ -102,12 +72,11 @@ impl<'a> Site<'a> {
                 [x + dx, y + dy, z + piece.at_m[2]]
             };
             Placed {
-                class: piece.class,
                 at_m: at_m.map(rounded),
                 turn: turn.then(piece.turn),
                 on: piece.on.map(|on| first + on),
                 works: piece.works.map(|works| first + works),
-                size_m: piece.size_m,
+                ..piece.clone()
             }
         });
         placed.collect()
