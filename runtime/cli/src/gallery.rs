@@ -8,10 +8,10 @@ use std::{
 };
 
 use anyhow::Context as _;
-use cohabit_cdf::{Catalog, Layout, Mission, RoomId};
+use cohabit_cdf::{Catalog, ClassId, Layout, Mission, RoomId};
 use cohabit_render::{
     Camera, Lens, MeshLibrary, Planes, Renderer, Scene,
-    gallery::{self, Picture},
+    gallery::{self, Picture, Sheet},
     minimap,
 };
 use cohabit_world::World;
@@ -25,6 +25,9 @@ use crate::{failure::bad_input, rendering::Rendering, terminal::shown, world::Wo
 pub struct Gallery {
     /// The folder to write into
     folder: PathBuf,
+    /// Draw only the classes and floor plans whose ids begin so; as often as needed
+    #[arg(long, value_name = "PREFIX")]
+    only: Vec<String>,
     #[command(flatten)]
     packs: WorldPacks,
     #[command(flatten)]
@@ -52,18 +55,40 @@ impl Gallery {
         let meshes = Arc::new(MeshLibrary::build(&catalog).context("build the models")?);
         let mut renderer = self.rendering.start()?;
         let bar = ProgressBar::new_spinner().with_message("objects");
-        for sheet in gallery::sheets(&meshes, &catalog) {
+        for sheet in self.sheets(&meshes, &catalog)? {
             let picture = sheet.paint(&mut *renderer, &meshes, CELL_PX);
             self.write(&format!("objects-{}", sheet.name), &picture.rgba, [picture.width, picture.height])?;
             bar.tick();
         }
-        for id in Layout::ids(&catalog) {
+        for id in Layout::ids(&catalog).into_iter().filter(|id| self.wants(id)) {
             bar.set_message(id.clone());
             self.floor_plan(&id, &catalog, &meshes, &mut *renderer)?;
         }
         bar.finish_and_clear();
         println!("{} pictures in {}", fs::read_dir(&self.folder)?.count(), shown(self.folder.display()));
         Ok(())
+    }
+
+    fn sheets(&self, meshes: &MeshLibrary, catalog: &Catalog) -> anyhow::Result<Vec<Sheet>> {
+        if self.only.is_empty() {
+            return Ok(gallery::sheets(meshes, catalog).collect());
+        }
+        for prefix in &self.only {
+            let ids = catalog.classes().iter().map(|class| class.id.clone()).chain(Layout::ids(catalog));
+            if !ids.into_iter().any(|id| id.starts_with(prefix)) {
+                return Err(bad_input(format!(
+                    "--only {prefix}: no class and no floor plan has an id that begins so; `cohabit catalog` lists all"
+                )));
+            }
+        }
+        let classes = (0..catalog.classes().len())
+            .map(|index| ClassId(index as u16))
+            .filter(|class| self.wants(&catalog.class(*class).id));
+        Ok(gallery::sheets_of(meshes, catalog, classes).collect())
+    }
+
+    fn wants(&self, id: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|prefix| id.starts_with(prefix))
     }
 
     fn floor_plan(

@@ -145,6 +145,15 @@ pub fn states(catalog: &Catalog, class: ClassId) -> Vec<State> {
 /// All sheets: those who act, signs of states, then every class that can be more than one thing, then the rest.
 pub fn sheets<'a>(meshes: &'a MeshLibrary, catalog: &'a Catalog) -> impl Iterator<Item = Sheet> + 'a {
     let classes = (0..catalog.classes().len()).map(|index| ClassId(index as u16));
+    [bodies(meshes, catalog), signs(meshes, catalog)].into_iter().chain(sheets_of(meshes, catalog, classes))
+}
+
+/// Sheets of these classes alone.
+pub fn sheets_of<'a>(
+    meshes: &'a MeshLibrary,
+    catalog: &'a Catalog,
+    classes: impl Iterator<Item = ClassId>,
+) -> impl Iterator<Item = Sheet> + 'a {
     let (still, changing): (Vec<_>, Vec<_>) = classes.partition(|class| states(catalog, *class).len() == 1);
     let changing: Vec<Vec<ClassId>> = changing.chunks(CLASSES_PER_SHEET).map(<[_]>::to_vec).collect();
     let still: Vec<Vec<ClassId>> = still.chunks(CLASSES_PER_SHEET * 4).map(<[_]>::to_vec).collect();
@@ -154,10 +163,7 @@ pub fn sheets<'a>(meshes: &'a MeshLibrary, catalog: &'a Catalog) -> impl Iterato
             cells: group.into_iter().flat_map(|class| cells(meshes, catalog, class)).collect(),
         })
     };
-    [bodies(meshes, catalog), signs(meshes, catalog)]
-        .into_iter()
-        .chain(named("states", changing))
-        .chain(named("decor", still))
+    named("states", changing).chain(named("decor", still))
 }
 
 /// A class in all its states.
