@@ -18,11 +18,13 @@ mod ids;
 mod limits;
 mod rooms;
 mod template;
+mod with_program;
 
 use std::{collections::BTreeSet, sync::Arc};
 
 use serde::Deserialize;
 
+pub use with_program::{builtin_files, names as builtin_names};
 pub use error::{PackError, PackErrors};
 pub use template::{NAME_RULE, files as template, is_name};
 

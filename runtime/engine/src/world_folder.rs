@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use cohabit_cdf::{PackErrors, PackFile, WorldPack};
+use cohabit_cdf::{PackErrors, PackFile, WorldPack, world_pack};
 
 /// How deep its folders lie within each other.
 const DEEPEST: usize = 4;
@@ -60,7 +60,7 @@ pub enum WorldFolderError {
     Pack(#[from] PackErrors),
 }
 
-/// The world pack in a folder. Files and folders whose names begin with a dot are no part of it.
+/// The world pack in a folder, or the one that is built in, where there is no such folder and it is called so. Files and folders whose names begin with a dot are no part of it.
 ///
 /// # Errors
 /// [`WorldFolderError`] names the file or the folder, and what is wrong with it.
@@ -69,12 +69,18 @@ pub fn read_world_folder(folder: &Path) -> Result<WorldPack, WorldFolderError> {
     Ok(WorldPack::parse(name.trim_end_matches('/'), world_folder_files(folder)?)?)
 }
 
-/// The files of the pack in a folder. Files and folders whose names begin with a dot are no part of it.
+/// The files of the pack in a folder, or of the one that is built in, as [`read_world_folder`] finds it. Files and folders whose names begin with a dot are no part of it.
 ///
 /// # Errors
 /// [`WorldFolderError`] names the file or the folder, and what is wrong with it.
 pub fn world_folder_files(folder: &Path) -> Result<Vec<PackFile>, WorldFolderError> {
-    let root = fs::canonicalize(folder).map_err(|source| failed(folder, source))?;
+    let root = match fs::canonicalize(folder) {
+        Ok(root) => root,
+        Err(source) => {
+            let builtin = folder.to_str().and_then(world_pack::builtin_files);
+            return builtin.ok_or_else(|| failed(folder, source));
+        }
+    };
     if !root.is_dir() {
         return Err(WorldFolderError::NoFolder(folder.to_owned()));
     }

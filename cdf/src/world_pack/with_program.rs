@@ -1,0 +1,46 @@
+//! World packs that come with the program, by name.
+
+use super::PackFile;
+use crate::builtin::PACKS;
+
+/// The names of the packs that are built in.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    PACKS.iter().map(|(name, _)| *name)
+}
+
+/// The files of the pack that is built in by this name.
+#[must_use]
+pub fn builtin_files(name: &str) -> Option<Vec<PackFile>> {
+    let (_, files) = PACKS.iter().find(|(known, _)| *known == name)?;
+    let file = |(path, text): &(&str, &str)| PackFile { path: (*path).to_owned(), bytes: text.as_bytes().to_vec() };
+    Some(files.iter().map(file).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Layout, Mission, WorldData, WorldPack};
+
+    #[test]
+    fn each_pack_that_is_built_in_is_read_with_all_its_plans_and_missions() {
+        assert!(names().count() > 0);
+        for name in names() {
+            let pack = WorldPack::parse(name, builtin_files(name).unwrap()).unwrap();
+            assert_eq!(pack.id().name, name);
+            let world = WorldData::layered(vec![pack]).unwrap();
+            let pack = &world.packs()[0];
+            assert!(pack.plans().count() > 0 && pack.missions().count() > 0, "{name}");
+            for plan in pack.plans() {
+                Layout::find(plan, world.catalog()).unwrap();
+            }
+            for (mission, text) in pack.missions() {
+                Mission::parse(text, world.catalog()).unwrap_or_else(|error| panic!("{mission}: {error}"));
+            }
+        }
+    }
+
+    #[test]
+    fn no_other_name_is_a_pack() {
+        assert_eq!(builtin_files("no-such-pack"), None);
+    }
+}
