@@ -21,5 +21,6 @@ mod robustness;
 mod stop;
 mod support;
 mod surroundings;
+mod tmp_people;
 mod truth;
 mod utterances;

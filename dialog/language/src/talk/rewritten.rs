@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use crate::{
+    answer::claim::asked_state,
     context::Context,
     known::surroundings,
     read::{chatter, clause::Part, parts, segments},
@@ -15,7 +16,7 @@ use crate::{
         wording::Wording,
     },
     understanding::{Clarification, Understanding},
-    words::token,
+    words::{lexicon::StateWord, token},
 };
 
 /// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
@@ -105,8 +106,22 @@ impl Conversation<'_> {
                 }
             }
         };
+        // `is it in one piece?`, told as whether it is broken: what is so is said, and no yes or no to another question.
+        let understanding =
+            if self.asks_other_state(text, wording) { understanding.without_yes() } else { understanding };
         then.reason = then.reason.replacen(reply::ASKED_TO, reply::UNDERSTOOD_TO, 1);
         Some(Way { understanding, probability, context: then })
+    }
+
+    /// Whether plain words ask for a state by a word whose meaning was not said.
+    fn asks_other_state(&self, text: &str, wording: &Wording<'_>) -> bool {
+        let (asked, _) = self.lexicon.normalise(text);
+        let Some((state, _)) = asked_state(self.lexicon, &asked).filter(|_| text.ends_with('?')) else { return false };
+        let is_said = |at: usize| {
+            let (_, said) = self.lexicon.states.longest(&wording.words[at..])?;
+            (*said == state).then_some(())
+        };
+        matches!(state, StateWord::Flag(..)) && (0..wording.words.len()).find_map(is_said).is_none()
     }
 
     /// What is said to who asks for nothing: thanks, praise and such have a reply.
