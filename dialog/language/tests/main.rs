@@ -21,6 +21,5 @@ mod robustness;
 mod stop;
 mod support;
 mod surroundings;
-mod tmp_people;
 mod truth;
 mod utterances;

@@ -96,6 +96,9 @@ impl Conversation<'_> {
             requests if token::words(requests) == token::words(wording.utterance) => {
                 self.understand_said(wording.utterance, &mut then)
             }
+            requests if let Some(named) = said_twice(requests) => {
+                self.requested(&format!("where is {named}?"), &mut then)?.without_yes().after("Yes.")
+            }
             requests => {
                 if let Some(rest) = requests.strip_prefix("stop; ") {
                     let stopped = self.stopped("", &mut then);
@@ -149,6 +152,14 @@ impl Conversation<'_> {
         let all = format!("{around}\n{}", transcript(utterance, lines));
         WRITTEN.get_or_insert_with(&all, || rewrite(utterance, lines, around))
     }
+}
+
+/// What `is the time machine the time machine?` names: what was described is taken for what was named.
+fn said_twice(request: &str) -> Option<&str> {
+    let both = request.strip_prefix("is ")?.strip_suffix('?')?;
+    let (one, other) = both.split_at_checked(both.len() / 2)?;
+    let (one, other) = (one.trim(), other.trim());
+    (one == other && !one.is_empty()).then_some(one)
 }
 
 /// Plain requests without talk beside them.
