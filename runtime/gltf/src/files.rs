@@ -27,7 +27,7 @@ pub(crate) struct Files<'a> {
 ///
 /// # Errors
 /// [`GltfError`] says why it is not read.
-pub(crate) fn document(path: &Path) -> Result<Vec<u8>, GltfError> {
+pub fn read_document(path: &Path) -> Result<Vec<u8>, GltfError> {
     let named = |reason: String| GltfError::at(path.display().to_string(), reason);
     let (bytes, length) = read(path, LARGEST).map_err(named)?;
     if length > LARGEST {

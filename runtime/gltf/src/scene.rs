@@ -2,7 +2,6 @@
 
 use std::{collections::BTreeMap, rc::Rc};
 
-use cohabit_cdf::model::Material;
 use glam::{Mat4, Quat, Vec3};
 use gltf::json::{
     Index, Mesh, Node, Root, Scene,
@@ -11,7 +10,7 @@ use gltf::json::{
     validation::Checked,
 };
 
-use crate::{accessor::Accessors, container::Document, error::GltfError, files::Files, surface::Surfaces};
+use crate::{accessor::Accessors, container::Document, error::GltfError, files::Files, surface::{Finish, Surfaces}};
 
 /// The most triangles that are read.
 const MOST_TRIANGLES: u64 = 1_000_000;
@@ -27,14 +26,6 @@ pub(crate) struct Face {
     pub finish: Finish,
     /// Whether its back is seen, too.
     pub two_sided: bool,
-}
-
-/// What a surface is made of.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(crate) struct Finish {
-    pub material: Material,
-    /// Of what is seen through: how much it hides, in tenths.
-    pub opacity_tenths: Option<u8>,
 }
 
 /// All triangles, and how many primitives are none.

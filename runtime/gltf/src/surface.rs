@@ -16,7 +16,6 @@ use crate::{
     error::GltfError,
     files::Files,
     picture::{Meaning, Picture, Wrap},
-    scene::Finish,
 };
 
 /// The most pictures that are decoded.
@@ -29,6 +28,14 @@ const ABSENT: f32 = 0.05;
 const SHINES: f32 = 0.3;
 /// The colour of what has no material.
 const GRAY: f32 = 0.6;
+
+/// What a surface is made of.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) struct Finish {
+    pub material: Kind,
+    /// Of what is seen through: how much it hides, in tenths.
+    pub opacity_tenths: Option<u8>,
+}
 
 /// The materials of a document.
 pub(crate) struct Surfaces<'a> {

@@ -207,8 +207,12 @@ pub enum ShapeError {
     #[error("`outline` crosses itself, or has no area")]
     Crossed,
     /// Points and triangles are no mesh.
-    #[error("{0}; {}", .0.remedy())]
-    Mesh(#[from] MeshError),
+    #[error("{error}; {}", .error.remedy())]
+    Mesh {
+        /// What is wrong.
+        #[from]
+        error: MeshError,
+    },
 }
 
 /// The surface of `shape` at this precision.

@@ -40,7 +40,7 @@ fn gather(points: &[Vec3], triangles: &[[u32; 3]], cell_m: f32) -> (Vec<Vec3>, V
     let (mut sums, mut merged_of) = (Vec::new(), Vec::with_capacity(points.len()));
     for (point, is_border) in points.iter().zip(borders) {
         let cell = (*point / cell_m).floor();
-        let merged = *cells.entry(cell.as_ivec3().to_array()).or_insert(sums.len() as u32);
+        let merged = *cells.entry(whole(cell)).or_insert(sums.len() as u32);
         if merged as usize == sums.len() {
             sums.push((Vec3::ZERO, 0_u32, None));
         }
@@ -58,6 +58,10 @@ fn gather(points: &[Vec3], triangles: &[[u32; 3]], cell_m: f32) -> (Vec<Vec3>, V
     let merged = triangles.iter().map(|triangle| triangle.map(|corner| merged_of[corner as usize]));
     let kept = merged.filter(|[a, b, c]| a != b && b != c && c != a).filter(|triangle| known.insert(turned(*triangle)));
     (points, kept.collect())
+}
+
+fn whole(vector: Vec3) -> [i32; 3] {
+    vector.to_array().map(|value| value as i32)
 }
 
 /// The same triangle with its least corner first.
@@ -111,7 +115,7 @@ fn with_normals(points: &[Vec3], triangles: &[[u32; 3]], least: f32) -> Solid {
             let near = around[point as usize].iter().map(|other| faces[*other]);
             let alike = near.filter(|other| other.normalize_or_zero().dot(outward) >= least - ROUNDING);
             let normal = alike.sum::<Vec3>().normalize_or(outward);
-            let key = (point, (normal * NORMAL_STEPS).round().as_ivec3().to_array());
+            let key = (point, whole((normal * NORMAL_STEPS).round()));
             *known.entry(key).or_insert_with(|| solid.corner(points[point as usize], normal))
         });
         solid.triangle(corners);
@@ -188,7 +192,7 @@ mod tests {
                 (0..40_u16).flat_map(|i| [y, 0.031].map(|y| [f32::from(i) * 0.003, y, 0.002])).collect();
             let triangles: Vec<[u32; 3]> = (0..39).map(|i| 2 * i).flat_map(|i| [[i, i + 2, i + 1], [i + 1, i + 2, i + 3]]).collect();
             let coarse = levels(&points, &triangles, None).pop().unwrap();
-            let mut shared: Vec<[i32; 3]> = coarse.positions.iter().map(|p| (*p * 1e5).round().as_ivec3().to_array()).collect();
+            let mut shared: Vec<[i32; 3]> = coarse.positions.iter().map(|p| whole((*p * 1e5).round())).collect();
             shared.sort_unstable();
             shared.dedup();
             shared
