@@ -82,7 +82,9 @@ fn property(text: &str) -> Result<Property, String> {
 
 fn sides(text: &str) -> Result<[f32; 3], String> {
     let sides: Option<Vec<f32>> = text.split(',').map(|side| side.trim().parse().ok()).collect();
-    sides.and_then(|sides| sides.try_into().ok()).ok_or_else(|| "write three lengths, such as `0.1,0.1,0.12`".to_owned())
+    sides
+        .and_then(|sides| sides.try_into().ok())
+        .ok_or_else(|| "write three lengths, such as `0.1,0.1,0.12`".to_owned())
 }
 
 fn stands(text: &str) -> Result<Stands, String> {

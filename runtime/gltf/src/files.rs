@@ -65,7 +65,8 @@ impl<'a> Files<'a> {
         };
         let length = bytes.len() as u64;
         let left = self.left.get().checked_sub(length);
-        let too_many = || GltfError::TooMany { what: "bytes or more", have: LARGEST + 1, most: LARGEST, remedy: SMALLER };
+        let too_many =
+            || GltfError::TooMany { what: "bytes or more", have: LARGEST + 1, most: LARGEST, remedy: SMALLER };
         self.left.set(left.ok_or_else(too_many)?);
         Ok(Cow::Owned(bytes))
     }

@@ -99,7 +99,8 @@ pub fn import(bytes: &[u8], folder: Option<&Path>, options: &Options) -> Result<
     let longest = ((bounds[1] - bounds[0]) * scale).max_element();
     let faces = read.faces.iter().map(|face| placed(face.corners)).zip(group_of);
     let whole = weld(faces, (longest * WELD).max(1e-6));
-    let mesh = simplified(&whole, &groups, options.triangles)?;
+    let placed_bounds = bounds.map(|corner| corner * scale + offset);
+    let mesh = simplified(&whole, placed_bounds, &groups, options.triangles)?;
     let [low, high] = frame::bounds(mesh.points.iter().copied()).unwrap_or_default();
     let size_m = (high - low).max(Vec3::splat(0.001)).to_array().map(rounded);
     let volume_m3 = volume(&mesh, size_m);
@@ -120,13 +121,16 @@ pub fn import(bytes: &[u8], folder: Option<&Path>, options: &Options) -> Result<
     })
 }
 
-/// With so many triangles at most, on the grid on which coordinates are written, backs included.
-fn simplified(whole: &Welded, groups: &[Group], most: usize) -> Result<Welded, GltfError> {
+/// With so many triangles at most, within the same bounds, on the grid on which coordinates are written, backs included.
+fn simplified(whole: &Welded, bounds: [Vec3; 2], groups: &[Group], most: usize) -> Result<Welded, GltfError> {
     let mut target = most;
     let mut have = 0;
     for _ in 0..TRIES {
         let fewer = reduce(whole, target);
-        let on_grid = |corner: Vec3| Vec3::from_array(corner.to_array().map(rounded));
+        // Round things lose a little of their size.
+        let [low, high] = frame::bounds(fewer.points.iter().copied()).unwrap_or(bounds);
+        let grown = grown(high - low, bounds[1] - bounds[0]);
+        let on_grid = |corner: Vec3| Vec3::from_array(((corner - low) * grown + bounds[0]).to_array().map(rounded));
         let fewer = weld(fewer.faces().map(|(corners, group)| (corners.map(on_grid), group)), GRID_M);
         if fewer.triangles.is_empty() {
             return Err(GltfError::Empty("export the object as a mesh of triangles, or ask for more by --triangles"));
@@ -142,6 +146,12 @@ fn simplified(whole: &Welded, groups: &[Group], most: usize) -> Result<Welded, G
         }
     }
     Err(GltfError::Reduce { have, most })
+}
+
+/// By how much each side has to grow; one of which most was lost stays as it is.
+fn grown(have: Vec3, wanted: Vec3) -> Vec3 {
+    let ratio = |axis: usize| if have[axis] > 0.5 * wanted[axis] { wanted[axis] / have[axis] } else { 1.0 };
+    Vec3::new(ratio(0), ratio(1), ratio(2))
 }
 
 /// The nearest number that is written with four decimals.
@@ -163,9 +173,12 @@ fn class_of(options: &Options, size_m: [f32; 3], volume_m3: f32, color: [u8; 3])
         let mass_kg = volume_m3 * DENSITY_KG_M3;
         ((mass_kg * 1000.0).round() / 1000.0).clamp(0.01, 5000.0)
     });
-    let mut properties = options.properties.clone();
-    let mut seen = Vec::new();
-    properties.retain(|property| !seen.contains(property) && { seen.push(*property); true });
+    let mut properties: Vec<Property> = Vec::new();
+    for property in &options.properties {
+        if !properties.contains(property) {
+            properties.push(*property);
+        }
+    }
     let receptacle = properties.contains(&Property::Receptacle).then(|| on_top(size_m));
     ObjectClass {
         id: options.id.clone(),

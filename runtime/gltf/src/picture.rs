@@ -184,7 +184,8 @@ fn measure(bytes: &[u8]) -> Option<(&'static str, [u32; 2])> {
 /// Decodes a picture, as the only one of a document.
 fn decode(bytes: &[u8], kind: &str) -> Result<Data, String> {
     let length = bytes.len();
-    let views = format!("\"buffers\":[{{\"byteLength\":{length}}}],\"bufferViews\":[{{\"buffer\":0,\"byteLength\":{length}}}]");
+    let views =
+        format!("\"buffers\":[{{\"byteLength\":{length}}}],\"bufferViews\":[{{\"buffer\":0,\"byteLength\":{length}}}]");
     let root = deserialize::from_str(&format!("{{\"asset\":{{\"version\":\"2.0\"}},{views}}}"));
     let document = Document::from_json(root.map_err(|error| error.to_string())?).map_err(|error| error.to_string())?;
     let view = document.views().next().ok_or("it has no bytes")?;
@@ -211,13 +212,20 @@ mod tests {
     fn a_triangle_shows_the_mean_of_what_lies_under_it() {
         // The left half is red, the right half is blue.
         let row: Vec<u8> = [[255, 0, 0]; 8].into_iter().chain([[0, 0, 255]; 8]).flatten().collect();
-        let picture = Picture::read(&png([16, 16], png::ColorType::Rgb, &row.repeat(16)), Meaning::Color, "images[0]").unwrap();
+        let picture =
+            Picture::read(&png([16, 16], png::ColorType::Rgb, &row.repeat(16)), Meaning::Color, "images[0]").unwrap();
         assert_eq!(picture.over(LEFT, REPEAT), [1.0, 0.0, 0.0, 1.0]);
         let right = LEFT.map(|[u, v]| [u + 0.5, v]);
         assert_eq!(picture.over(right, REPEAT), [0.0, 0.0, 1.0, 1.0]);
         assert_eq!(picture.over(right.map(|[u, v]| [u - 7.0, v + 3.0]), REPEAT), [0.0, 0.0, 1.0, 1.0]);
-        assert_eq!(picture.over(right.map(|[u, v]| [u + 1.0, v]), Wrap([WrappingMode::MirroredRepeat; 2])), [1.0, 0.0, 0.0, 1.0]);
-        assert_eq!(picture.over(LEFT.map(|[u, v]| [u - 7.0, v]), Wrap([WrappingMode::ClampToEdge; 2])), [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(
+            picture.over(right.map(|[u, v]| [u + 1.0, v]), Wrap([WrappingMode::MirroredRepeat; 2])),
+            [1.0, 0.0, 0.0, 1.0]
+        );
+        assert_eq!(
+            picture.over(LEFT.map(|[u, v]| [u - 7.0, v]), Wrap([WrappingMode::ClampToEdge; 2])),
+            [1.0, 0.0, 0.0, 1.0]
+        );
         let whole = picture.over([[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]], REPEAT);
         assert!((whole[0] - 0.5).abs() < 0.05 && (whole[2] - 0.5).abs() < 0.05, "{whole:?}");
         assert_eq!(picture.over([[f32::NAN, 0.0]; 3], REPEAT), [1.0, 0.0, 0.0, 1.0]);
@@ -225,9 +233,33 @@ mod tests {
 
     #[test]
     fn large_pictures_are_made_small_and_gray_ones_have_one_channel() {
-        let picture = Picture::read(&png([4000, 2], png::ColorType::GrayscaleAlpha, &[255, 51].repeat(8000)), Meaning::Color, "x").unwrap();
+        let picture = Picture::read(
+            &png([4000, 2], png::ColorType::GrayscaleAlpha, &[255, 51].repeat(8000)),
+            Meaning::Color,
+            "x",
+        )
+        .unwrap();
         assert_eq!(picture.size, [500, 1]);
-        assert_eq!(picture.texels[499], [1.0, 1.0, 1.0, 0.2]);
+        let last = picture.texels[499];
+        assert!(last[0] > 0.999 && (last[3] - 0.2).abs() < 1e-5, "{last:?}");
+    }
+
+    #[test]
+    fn jpeg_is_read_too() {
+        let mut bytes = Vec::new();
+        let encoder = jpeg_encoder::Encoder::new(&mut bytes, 95);
+        encoder.encode(&[20, 160, 60].repeat(32 * 16), 32, 16, jpeg_encoder::ColorType::Rgb).unwrap();
+        assert_eq!(measure(&bytes), Some(("image/jpeg", [32, 16])));
+        let picture = Picture::read(&bytes, Meaning::Color, "images[0]").unwrap();
+        let [red, green, blue, alpha] = picture.over(LEFT, REPEAT);
+        for (channel, expected) in [(red, 20), (green, 160), (blue, 60)] {
+            assert!((channel - linear(expected)).abs() < 0.03, "{red} {green} {blue}");
+        }
+        assert_eq!(alpha, 1.0);
+        for length in 0..bytes.len() {
+            // Some of a picture that is cut off may be shown.
+            let _ = Picture::read(&bytes[..length], Meaning::Color, "images[0]");
+        }
     }
 
     #[test]

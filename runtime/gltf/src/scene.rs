@@ -10,7 +10,13 @@ use gltf::json::{
     validation::Checked,
 };
 
-use crate::{accessor::Accessors, container::Document, error::GltfError, files::Files, surface::{Finish, Surfaces}};
+use crate::{
+    accessor::Accessors,
+    container::Document,
+    error::GltfError,
+    files::Files,
+    surface::{Finish, Surfaces},
+};
 
 /// The most triangles that are read.
 const MOST_TRIANGLES: u64 = 1_000_000;
@@ -169,7 +175,10 @@ impl Reading<'_> {
         }
         let same = |index: Index<Accessor>, have: usize| match have == points.len() {
             true => Ok(()),
-            false => Err(GltfError::at(at, format!("accessors[{}] has {have} values for {} points", index.value(), points.len()))),
+            false => Err(GltfError::at(
+                at,
+                format!("accessors[{}] has {have} values for {} points", index.value(), points.len()),
+            )),
         };
         let surface = self.surfaces.surface(primitive.material)?;
         let places = match surface.tex_coord.and_then(|set| attribute(Semantic::TexCoords(set))) {

@@ -3,13 +3,7 @@
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use cohabit_cdf::model::Material as Kind;
-use gltf::json::{
-    Index, Material, Root,
-    image::Image,
-    material::AlphaMode,
-    texture::Info,
-    validation::Checked,
-};
+use gltf::json::{Index, Material, Root, image::Image, material::AlphaMode, texture::Info, validation::Checked};
 
 use crate::{
     accessor::Accessors,
@@ -224,7 +218,7 @@ impl Surface {
             Alpha::Blend => alpha,
         };
         if opacity < OPAQUE {
-            let opacity_tenths = Some(((opacity * 10.0) as u8).clamp(1, 9));
+            let opacity_tenths = Some(((opacity * 10.0).round() as u8).clamp(1, 9));
             return Some(([red, green, blue], Finish { material: Kind::Clear, opacity_tenths }));
         }
         if let Some(shines) = self.shines {

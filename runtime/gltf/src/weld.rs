@@ -73,7 +73,8 @@ impl Welded {
     /// The same with the backs of those triangles whose group shows them, where one can look behind the surface.
     pub(crate) fn with_backs(&self, is_two_sided: impl Fn(usize) -> bool) -> Self {
         let open = self.open();
-        let backs = (0..self.triangles.len()).filter(|triangle| open[*triangle] && is_two_sided(self.groups[*triangle]));
+        let backs =
+            (0..self.triangles.len()).filter(|triangle| open[*triangle] && is_two_sided(self.groups[*triangle]));
         let mut all = self.clone();
         for triangle in backs {
             let [a, b, c] = self.triangles[triangle];

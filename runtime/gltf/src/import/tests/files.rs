@@ -125,7 +125,8 @@ impl Builder {
 
     fn document(&self, buffer: &str) -> String {
         let roots: Vec<String> = self.roots.iter().map(ToString::to_string).collect();
-        let mut text = format!(r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[{}]}}]"#, roots.join(","));
+        let mut text =
+            format!(r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[{}]}}]"#, roots.join(","));
         for (name, list) in [
             ("bufferViews", &self.views),
             ("accessors", &self.accessors),
@@ -177,7 +178,8 @@ impl Builder {
 
 /// A cube of these sides about the origin.
 pub fn cube(sides: [f32; 3]) -> Mesh {
-    let corner = |index: u32| [0, 1, 2].map(|axis| if index >> axis & 1 == 0 { -sides[axis] } else { sides[axis] } / 2.0);
+    let corner =
+        |index: u32| [0, 1, 2].map(|axis| if index >> axis & 1 == 0 { -sides[axis] } else { sides[axis] } / 2.0);
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     ((0..8).map(corner).collect(), faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())
 }
@@ -193,7 +195,7 @@ pub fn ball(rows: u32) -> Mesh {
     let place = |row: u32, column: u32| {
         let latitude = std::f32::consts::PI * (row as f32 / rows as f32 - 0.5);
         let longitude = std::f32::consts::TAU * (column % columns) as f32 / columns as f32;
-        let ring = if row % rows == 0 { 0.0 } else { 0.1 * latitude.cos() };
+        let ring = if row.is_multiple_of(rows) { 0.0 } else { 0.1 * latitude.cos() };
         [ring * longitude.sin(), 0.1 * latitude.sin(), ring * longitude.cos()]
     };
     let points = (0..=rows).flat_map(|row| (0..=columns).map(move |column| place(row, column))).collect();

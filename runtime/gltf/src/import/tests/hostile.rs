@@ -31,7 +31,8 @@ fn a_file_that_is_cut_anywhere_is_refused() {
     let image = file.png([2, 1], &[0, 160, 0, 0, 0, 255]);
     file.texture(&format!(r#"{{"source":{image}}}"#));
     let material = file.material(r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#);
-    let square = file.textured(&quad([0.0; 3], [0.1, 0.1, 0.0]), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], material);
+    let square =
+        file.textured(&quad([0.0; 3], [0.1, 0.1, 0.0]), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], material);
     file.node(&format!(r#"{{"mesh":{}}}"#, file.mesh(&[square])));
     let whole = file.glb();
     assert!(import(&whole, None, &options()).is_ok());
@@ -68,7 +69,14 @@ fn what_is_no_gltf_is_refused() {
 fn required_extensions_are_named() {
     let bytes = changed(r#""scene":0"#, r#""extensionsRequired":["KHR_draco_mesh_compression"],"scene":0"#);
     check(&bytes, &["`KHR_draco_mesh_compression`", "export"]);
-    assert!(import(&changed(r#""scene":0"#, r#""extensionsRequired":["KHR_mesh_quantization"],"scene":0"#), None, &options()).is_ok());
+    assert!(
+        import(
+            &changed(r#""scene":0"#, r#""extensionsRequired":["KHR_mesh_quantization"],"scene":0"#),
+            None,
+            &options()
+        )
+        .is_ok()
+    );
 }
 
 #[test]
@@ -77,11 +85,20 @@ fn counts_offsets_and_lengths_that_reach_beyond_are_refused() {
     check(&changed(r#""count":8"#, r#""count":2999999"#), &["accessors[0]", "reach beyond"]);
     check(&changed(r#""count":8"#, r#""count":18446744073709551615"#), &["18446744073709551615 values", "at most"]);
     check(&changed(r#""count":36"#, r#""count":4000000000"#), &["1333333333 triangles", "at most 1000000"]);
-    check(&changed(r#""count":8"#, r#""byteOffset":18446744073709551615,"count":8"#), &["accessors[0]", "reach beyond"]);
-    check(&changed(r#""byteOffset":0"#, r#""byteOffset":18446744073709551615"#), &["bufferViews[0]", "beyond its buffer"]);
+    check(
+        &changed(r#""count":8"#, r#""byteOffset":18446744073709551615,"count":8"#),
+        &["accessors[0]", "reach beyond"],
+    );
+    check(
+        &changed(r#""byteOffset":0"#, r#""byteOffset":18446744073709551615"#),
+        &["bufferViews[0]", "beyond its buffer"],
+    );
     check(&changed(r#""byteLength":96"#, r#""byteLength":10000000000"#), &["bufferViews[0]", "beyond its buffer"]);
     check(&changed(r#""byteOffset":0"#, r#""byteStride":4,"byteOffset":0"#), &["accessors[0]", "overlap"]);
-    check(&changed(r#""byteOffset":0"#, r#""byteStride":18446744073709551615,"byteOffset":0"#), &["accessors[0]", "beyond"]);
+    check(
+        &changed(r#""byteOffset":0"#, r#""byteStride":18446744073709551615,"byteOffset":0"#),
+        &["accessors[0]", "beyond"],
+    );
     check(&changed(r#""buffer":0"#, r#""buffer":3"#), &["bufferViews[0]", "no buffer 3"]);
     check(&changed(r#""POSITION":0"#, r#""POSITION":9"#), &["accessors[9]", "there is none"]);
     check(&changed(r#""POSITION":0"#, r#""NORMAL":0"#), &["meshes[0].primitives[0]", "POSITION"]);
@@ -167,7 +184,12 @@ fn numbers_that_are_none_are_refused() {
     check(&changed(r#""mesh":0"#, r#""mesh":0,"scale":[0,0,0]"#), &["0 × 0 × 0 m", "at least 3 mm"]);
     let far = changed(r#""mesh":0"#, r#""mesh":0,"matrix":[1e38,0,0,1e38,0,1,0,0,0,0,1,0,3e38,3e38,3e38,1]"#);
     assert!(!said(&far).is_empty());
-    check(&changed(r#""mesh":0"#, r#""mesh":0,"rotation":[1e300,0,0,1]"#), &["NaN"]);
+    check(&changed(r#""mesh":0"#, r#""mesh":0,"rotation":[1e300,0,0,1]"#), &["no glTF", "out of range"]);
+    let mut file = Builder::default();
+    let cube = file.primitive(&cube([0.1, 0.1, 0.1]), None);
+    file.json_node(&format!(r#"{{"mesh":{},"scale":[3e38,3e38,3e38]}}"#, file.mesh(&[cube])));
+    file.node(r#"{"children":[0],"scale":[3e38,3e38,3e38]}"#);
+    check(&file.glb(), &["nodes[0]", "NaN"]);
 }
 
 #[test]
@@ -213,7 +235,7 @@ fn pictures_are_bounded_and_may_be_absent() {
         file.glb()
     };
     let first = r#"{"source":0}"#;
-    check(&with_image(r#"{"uri":"../secret.png"}"#, first), &["images[0]", "no folder"]);
+    check(&with_image(r#"{"uri":"../secret.png"}"#, first), &["images[0]", "leads out"]);
     check(&with_image(r#"{"bufferView":99}"#, first), &["bufferViews[99]"]);
     check(&with_image(r#"{"bufferView":0}"#, first), &["images[0]", "neither PNG nor JPEG"]);
     check(&with_image("{}", first), &["images[0]", "no data"]);
