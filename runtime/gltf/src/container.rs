@@ -13,6 +13,9 @@ const JSON: &[u8; 4] = b"JSON";
 const BIN: &[u8; 4] = b"BIN\0";
 /// The most bytes of the JSON, in which coordinates of embedded buffers may stand.
 const LARGEST_JSON: usize = 128 << 20;
+/// The most objects and the most commas of the JSON: they say how much memory it takes to read it.
+const MOST_OBJECTS: u64 = 600_000;
+const MOST_COMMAS: u64 = 5_000_000;
 /// The most entries of each of the document's lists.
 const MOST_ENTRIES: usize = 100_000;
 /// Extensions that are read, or change nothing of what is read.
@@ -28,6 +31,7 @@ const KNOWN: [&str; 10] = [
     "KHR_materials_volume",
     "KHR_materials_clearcoat",
 ];
+const FEWER: &str = "export fewer objects";
 const EXPORT_ANEW: &str = "export the model as glTF 2.0 (.glb) anew";
 
 /// A document, and the bytes that came with it.
@@ -44,6 +48,12 @@ pub(crate) fn open(bytes: &[u8]) -> Result<Document<'_>, GltfError> {
     if json.len() > LARGEST_JSON {
         let (have, most) = (json.len() as u64, LARGEST_JSON as u64);
         return Err(GltfError::TooMany { what: "bytes of JSON", have, most, remedy: "export the model as .glb" });
+    }
+    for (what, byte, most) in [("objects in the JSON", b'{', MOST_OBJECTS), ("commas in the JSON", b',', MOST_COMMAS)] {
+        let have = json.iter().filter(|own| **own == byte).count() as u64;
+        if have > most {
+            return Err(GltfError::TooMany { what, have, most, remedy: FEWER });
+        }
     }
     let root: Root = deserialize::from_slice(json)
         .map_err(|error| GltfError::Container { reason: format!("no glTF: {error}"), remedy: EXPORT_ANEW })?;
@@ -110,7 +120,7 @@ fn check(root: &Root) -> Result<(), GltfError> {
     ] {
         if have > MOST_ENTRIES {
             let (have, most) = (have as u64, MOST_ENTRIES as u64);
-            return Err(GltfError::TooMany { what, have, most, remedy: "export fewer objects" });
+            return Err(GltfError::TooMany { what, have, most, remedy: FEWER });
         }
     }
     Ok(())

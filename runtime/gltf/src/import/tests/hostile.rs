@@ -66,6 +66,17 @@ fn what_is_no_gltf_is_refused() {
 }
 
 #[test]
+fn json_that_would_take_much_memory_is_refused_before_it_is_read() {
+    let head = r#"{"asset":{"version":"2.0"},"nodes":["#;
+    check(format!("{head}{}{{}}]}}", "{},".repeat(700_000)).as_bytes(), &["700003 objects", "at most 600000"]);
+    check(format!("{head}{{}}{}]}}", ",{}".repeat(200_000)).as_bytes(), &["200001 nodes", "at most 100000"]);
+    let many = ",0".repeat(4_000_000);
+    let children = format!(r#"{head}{{"children":[0{many}]}}],"scene":0,"scenes":[{{"nodes":[0]}}]}}"#);
+    check(children.as_bytes(), &["nodes[0]", "its own child"]);
+    check(format!("{head}{}]}}", ",".repeat(6_000_000)).as_bytes(), &["commas", "at most 5000000"]);
+}
+
+#[test]
 fn required_extensions_are_named() {
     let bytes = changed(r#""scene":0"#, r#""extensionsRequired":["KHR_draco_mesh_compression"],"scene":0"#);
     check(&bytes, &["`KHR_draco_mesh_compression`", "export"]);
