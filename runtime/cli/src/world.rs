@@ -57,6 +57,13 @@ impl WorldPacks {
         WorldData::layered(packs).map_err(bad_input)
     }
 
+    /// The same with one more, the last.
+    pub fn with(&self, folder: &Path) -> Self {
+        let mut packs = self.clone();
+        packs.world_folders.push(folder.to_owned());
+        packs
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.world_folders.is_empty()
