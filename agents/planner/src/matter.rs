@@ -6,7 +6,7 @@ use cohabit_cdf::{
     ClassId, Mission, ObjectClass, ObjectId, Property, StateFlag,
     catalog::{
         Stands,
-        table::{Change, Content, Need, Test, View as _, takes},
+        table::{Change, Need, View as _, takes},
     },
     goal::{InstancePattern, Predicate},
     symbolic::{Place, SymbolicState},
