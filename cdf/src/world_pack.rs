@@ -24,9 +24,9 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use serde::Deserialize;
 
-pub use with_program::{builtin_files, names as builtin_names};
 pub use error::{PackError, PackErrors};
 pub use template::{NAME_RULE, files as template, is_name};
+pub use with_program::{builtin_files, names as builtin_names};
 
 use crate::{
     builtin,

@@ -197,7 +197,11 @@ impl Condition {
     /// The same with the classes of a kind where it names one.
     pub(super) fn of_kinds(mut self, kinds: &Kinds) -> Self {
         if let Some(pattern) = self.test.pattern_mut() {
-            pattern.0 = pattern.0.iter().flat_map(|name| kinds.get(name).cloned().unwrap_or_else(|| vec![name.clone()])).collect();
+            pattern.0 = pattern
+                .0
+                .iter()
+                .flat_map(|name| kinds.get(name).cloned().unwrap_or_else(|| vec![name.clone()]))
+                .collect();
         }
         self
     }

@@ -146,7 +146,8 @@ fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     let mut reader = Reader::new(lexicon, words);
     let phrase = reader.phrase_with_place()?;
     let is_told = phrase.color.is_some() && phrase.is_one_of_kind();
-    let is_name = is_told || !phrase.namings.is_empty() || phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_bare_pronoun();
+    let is_name =
+        is_told || !phrase.namings.is_empty() || phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_bare_pronoun();
     (is_name && lexicon.yes_no.is_filler(reader.rest())).then_some(phrase)
 }
 

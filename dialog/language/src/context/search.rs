@@ -60,7 +60,7 @@ pub(crate) enum Spot {
 impl Search {
     /// Whether it is to do the same with the same in the end, wherever it begins to look: a pronoun may stand for what the other one names.
     pub(crate) fn comes_to(&self, other: &Self) -> bool {
-        let (own, others) = (self.deeds(), other.deeds());
+        let (own, others) = (self.ends(), other.ends());
         let is_alike = |(one, other): (&&Clause, &&Clause)| {
             let (one_named, other_named) = (slot::named(one), slot::named(other));
             one.intent == other.intent
@@ -76,6 +76,23 @@ impl Search {
             |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look | Intent::Mention);
         let deeds: Vec<&Clause> = self.clauses.iter().filter(|clause| !only_goes(clause)).collect();
         if deeds.is_empty() { self.clauses.iter().collect() } else { deeds }
+    }
+
+    /// The same without what is picked up only to be put somewhere next.
+    fn ends(&self) -> Vec<&Clause> {
+        let deeds = self.deeds();
+        let is_put_next = |at: usize| {
+            let (one, next) = (deeds[at], deeds.get(at + 1));
+            one.intent == Intent::PickUp
+                && next.is_some_and(|next| {
+                    matches!(next.intent, Intent::Place | Intent::Bring)
+                        && slot::named(one)
+                            .first()
+                            .zip(slot::named(next).first())
+                            .is_some_and(|(one, next)| may_mean_the_same(one, next))
+                })
+        };
+        (0..deeds.len()).filter(|at| !is_put_next(*at)).map(|at| deeds[at]).collect()
     }
 
     pub(crate) fn new(clauses: Vec<Clause>, consent: Consent) -> Self {

@@ -132,7 +132,9 @@ fn landmark(catalog: &Catalog, scene: &Known, object: &KnownObject) -> Option<Ob
         .objects
         .iter()
         .filter(|other| other.id != object.id && other.room == object.room && other.parent.is_none() && is_seen(other))
-        .filter(|other| distance(other) <= NEAR_M && catalog.names(other.class).plain != catalog.names(object.class).plain)
+        .filter(|other| {
+            distance(other) <= NEAR_M && catalog.names(other.class).plain != catalog.names(object.class).plain
+        })
         .collect();
     near.sort_by(|one, other| distance(one).total_cmp(&distance(other)));
     near.into_iter().find(|other| is_only_one(catalog, scene, other)).map(|other| other.id)

@@ -175,7 +175,11 @@ impl Planner<'_> {
             tool: Some((chosen(tool, phrase), Role::Object(0))),
             ..settled.clone()
         };
-        if matches!(intent, Intent::Break | Intent::Cut) { self.add_break(&settled) } else { self.add_process(&settled) }
+        if matches!(intent, Intent::Break | Intent::Cut) {
+            self.add_break(&settled)
+        } else {
+            self.add_process(&settled)
+        }
     }
 
     /// Heating, cooling, cleaning and all else that takes several steps at a device.

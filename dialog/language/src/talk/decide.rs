@@ -281,8 +281,7 @@ fn settled(ways: &[Way]) -> Option<Way> {
 /// them goes on otherwise.
 fn begun(ways: &[Way]) -> Option<(Way, String)> {
     ways.iter().find_map(|way| {
-        let longer: Vec<(&Way, String)> =
-            ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).collect();
+        let longer: Vec<(&Way, String)> = ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).collect();
         // Probabilities of ways are as their shares of what the rewriter writes.
         let shares = longer.iter().map(|(one, _)| *one).chain([way]).map(|one| one.probability);
         let begun = Way { probability: shares.sum(), ..way.clone() };

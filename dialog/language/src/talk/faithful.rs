@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::{ObjectClass, Property, RoomId};
+use cohabit_cdf::{ClassId, ObjectClass, Property, RoomId};
 
 use crate::{
     read::{question, whether},
@@ -33,6 +33,8 @@ pub(crate) struct Source {
     pairs: BTreeSet<[String; 2]>,
     /// The same of what is around the robot.
     pairs_around: BTreeSet<[String; 2]>,
+    /// The words of what is around the robot.
+    around: BTreeSet<String>,
     /// Whether a condition was denied: `if it is not`.
     is_denied: bool,
     /// Whether anything was.
@@ -45,14 +47,24 @@ pub(crate) struct Source {
     is_here: bool,
     /// The rooms that were named, now or before.
     rooms: Vec<RoomId>,
+    /// What names things among the words that were said now, and which classes it may mean.
+    things: Vec<(String, BTreeSet<ClassId>)>,
+    /// The classes that anything may mean that was said, now or before, or that is around.
+    classes: BTreeSet<ClassId>,
 }
 
 impl Source {
     pub(crate) fn new(lexicon: &Lexicon, said: &[String], lines: &[(bool, String)], around: &str) -> Self {
         let before: Vec<Vec<String>> = lines.iter().map(|(_, line)| lexicon.normalise(line).0).collect();
+        let around_words = token::words(around);
+        let things = things(lexicon, said);
+        let earlier = before.iter().chain([&around_words]).flat_map(|words| things_of(lexicon, words));
         Self {
+            classes: things.iter().flat_map(|(_, classes)| classes.iter().copied()).chain(earlier).collect(),
+            things,
             pairs: before.iter().flat_map(|line| pairs(line)).collect(),
-            pairs_around: pairs(&token::words(around)).collect(),
+            pairs_around: pairs(&around_words).collect(),
+            around: around_words.into_iter().collect(),
             said: said.iter().cloned().collect(),
             is_denied: denies_condition(lexicon, said),
             only_asks: only_asks(lexicon, said),
@@ -109,6 +121,39 @@ impl Conversation<'_> {
             false => Some(words[at]),
         });
         kept.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Plain requests with the things that were named, where they name others of which nobody spoke and that are not around: who has read of
+    /// coffee pots alone takes a teapot for one.
+    pub(crate) fn with_things_said(&self, text: &str, source: &Source) -> String {
+        let requests = text.split("; ").map(|request| self.with_thing_said(request, text, source));
+        requests.collect::<Vec<_>>().join("; ")
+    }
+
+    fn with_thing_said(&self, request: &str, text: &str, source: &Source) -> String {
+        let words: Vec<String> = request.split(' ').map(str::to_owned).collect();
+        let is_unheard = |word: &String| {
+            let is_fluid = self.lexicon.fluids.exact(std::slice::from_ref(word)).is_some();
+            is_fluid && !source.words.contains(word) && !source.around.contains(word)
+        };
+        // `is it hot?`, taken for the coffee that it mostly is of.
+        if let Some(at) = words.windows(2).position(|pair| pair[0] == "the" && is_unheard(&pair[1])) {
+            return [&words[..at], &["it".to_owned()], &words[at + 2..]].concat().join(" ");
+        }
+        let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
+        let mut unnamed = source.things.iter().filter(|(_, classes)| classes.is_disjoint(&named));
+        let (Some((said, _)), None) = (unnamed.next(), unnamed.next()) else { return request.to_owned() };
+        let bare = |word: &String| word.trim_end_matches('?').to_owned();
+        let plain: Vec<String> = words.iter().map(bare).collect();
+        for at in 0..plain.len() {
+            let Some((length, namings)) = self.lexicon.classes.longest(&plain[at..]) else { continue };
+            if namings.iter().all(|naming| !source.classes.contains(&naming.class)) {
+                let mark = if words[at + length - 1].ends_with('?') { "?" } else { "" };
+                let said = format!("{said}{mark}");
+                return [&words[..at], &[said], &words[at + length..]].concat().join(" ");
+            }
+        }
+        request.to_owned()
     }
 
     /// Plain requests of which those that count things do so in this room, where that was said.
@@ -172,6 +217,24 @@ impl Conversation<'_> {
         };
         source.said.iter().any(says_all) && !words.iter().any(says_all) && (0..words.len()).any(is_unnamed)
     }
+}
+
+/// What names things among words, and which classes it may mean.
+fn things(lexicon: &Lexicon, words: &[String]) -> Vec<(String, BTreeSet<ClassId>)> {
+    let (mut things, mut at) = (Vec::new(), 0);
+    while at < words.len() {
+        let Some((length, namings)) = lexicon.classes.longest(&words[at..]) else {
+            at += 1;
+            continue;
+        };
+        things.push((words[at..at + length].join(" "), namings.iter().map(|naming| naming.class).collect()));
+        at += length;
+    }
+    things
+}
+
+fn things_of(lexicon: &Lexicon, words: &[String]) -> impl Iterator<Item = ClassId> {
+    things(lexicon, words).into_iter().flat_map(|(_, classes)| classes)
 }
 
 /// The rooms that words name.

@@ -35,7 +35,8 @@ impl Conversation<'_> {
         let around = self.around();
         let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
         for (at, (text, probability)) in self.rewritings(wording.utterance, context, &around).iter().enumerate() {
-            let text = &self.with_this_room(&self.without_invention(text, &source), &source);
+            let text = self.with_things_said(text, &source);
+            let text = &self.with_this_room(&self.without_invention(&text, &source), &source);
             let probability = probability * self.faithfulness(text, &source);
             let way = match self.of_rewriting(text, probability, wording, context) {
                 Some(way) => way,

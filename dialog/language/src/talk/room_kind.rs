@@ -26,7 +26,11 @@ pub(crate) fn bare(lexicon: &Lexicon, scene: &Known, words: &[String]) -> Option
     let mut at = 0;
     while at < words.len() {
         let rest = &words[at..];
-        let room = lexicon.rooms.longest(rest).map_or(0, |(length, _)| length);
+        // A room that this floor plan lacks may be called as several are together that it has: `the bedroom`.
+        let is_here = |(_, room): &(usize, &RoomId)| {
+            scene.may_have_room(**room) || standing_at(lexicon, scene, words, at).is_none()
+        };
+        let room = lexicon.rooms.longest(rest).filter(is_here).map_or(0, |(length, _)| length);
         let noun = lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
         if room == 0
             && noun == 0

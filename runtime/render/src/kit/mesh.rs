@@ -200,7 +200,7 @@ mod tests {
         };
         let (one, other) = (strip(0.0), strip(0.09));
         let shared = one.iter().filter(|place| other.contains(place)).count();
-// At each of eight cells along the line where they meet.
+        // At each of eight cells along the line where they meet.
         assert_eq!(shared, 8, "{one:?} {other:?}");
     }
 
