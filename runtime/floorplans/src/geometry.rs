@@ -250,10 +250,17 @@ impl Block {
         Self { low: [west - by_m, south - by_m, bottom], high: [east + by_m, north + by_m, top] }
     }
 
-    /// Whether two share space.
+    /// Whether it is as thin as a rug, on which others stand.
+    fn is_flat(&self) -> bool {
+        const FLAT_M: f32 = 0.003;
+        self.high[2] - self.low[2] < FLAT_M
+    }
+
+    /// Whether two share space. What is flat takes no space but of its like.
     pub fn overlaps(&self, other: &Self) -> bool {
         const SLACK_M: f32 = 0.001;
-        (0..3).all(|axis| self.low[axis] + SLACK_M < other.high[axis] && other.low[axis] + SLACK_M < self.high[axis])
+        let is_between_like = self.is_flat() == other.is_flat();
+        is_between_like && (0..3).all(|axis| self.low[axis] + SLACK_M < other.high[axis] && other.low[axis] + SLACK_M < self.high[axis])
     }
 
     /// How far a point of the floor is from it, m; 0 inside.
