@@ -10,11 +10,12 @@ use crate::{chance::Chance, furniture::Placed, geometry::Block, kind::Kind};
 
 /// The files of each kind of building.
 const OFFICE: &[&str] = &[include_str!("../data/office/things.toml")];
+// Those that name rooms come first: the first entry that is meant counts.
 const HOME: &[&str] = &[
-    include_str!("../data/home/things_living.toml"),
-    include_str!("../data/home/things_kitchen.toml"),
     include_str!("../data/home/things_bedrooms.toml"),
     include_str!("../data/home/things_bathrooms.toml"),
+    include_str!("../data/home/things_kitchen.toml"),
+    include_str!("../data/home/things_living.toml"),
     include_str!("../data/home/things_workrooms.toml"),
 ];
 

@@ -73,9 +73,10 @@ fn place(site: &mut Site<'_>, item: &Item, table: &FurnitureTable, chance: &mut 
 /// A place where an item may be: the origin of the arrangement and its turn.
 fn spot(site: &Site<'_>, item: &Item, arrangement: &Arrangement, chance: &mut Chance) -> Option<([f32; 2], Turn)> {
     match item.place {
-        Place::Wall => at_wall(site, arrangement, BEHIND_M, None, chance),
-        Place::Corner => at_wall(site, arrangement, BEHIND_M, Some(true), chance),
-        Place::Hung => at_wall(site, arrangement, HUNG_M, Some(false), chance),
+        Place::Wall => at_wall(site, arrangement, BEHIND_M, Along::Anywhere, chance),
+        Place::Corner => at_wall(site, arrangement, BEHIND_M, Along::End, chance),
+        Place::LeftCorner => at_wall(site, arrangement, BEHIND_M, Along::LeftEnd, chance),
+        Place::Hung => at_wall(site, arrangement, HUNG_M, Along::Between, chance),
         Place::Middle => in_the_middle(site, arrangement, chance),
         Place::Window => {
             let (wall, middle) = *chance.pick(&site.windows)?;
@@ -89,22 +90,39 @@ fn spot(site: &Site<'_>, item: &Item, arrangement: &Arrangement, chance: &mut Ch
     }
 }
 
-/// A place at some wall, in its corner or between its ends; the origin of the arrangement and its turn.
+/// Where along a wall something may be.
+#[derive(Clone, Copy, Eq, PartialEq)]
+enum Along {
+    Anywhere,
+    /// In a corner.
+    End,
+    /// In the corner at its left.
+    LeftEnd,
+    /// Between the corners.
+    Between,
+}
+
+/// A place at some wall; the origin of the arrangement and its turn.
 fn at_wall(
     site: &Site<'_>,
     arrangement: &Arrangement,
     behind_m: f32,
-    corner: Option<bool>,
+    along: Along,
     chance: &mut Chance,
 ) -> Option<([f32; 2], Turn)> {
     let width_m = arrangement.bounds.high[1] - arrangement.bounds.low[1];
     let is_long = |wall: &&Wall| metres(wall.length()) >= width_m + 2.0 * (HALF_WALL_M + BESIDE_M);
     let long: Vec<Wall> = site.walls.iter().filter(is_long).copied().collect();
     let wall = *long.get(chance.weighted(long.iter().map(|wall| wall.length() as f32)))?;
-    let is_snug = corner.unwrap_or_else(|| chance.is(SNUG));
+    let is_snug = match along {
+        Along::Anywhere => chance.is(SNUG),
+        Along::End | Along::LeftEnd => true,
+        Along::Between => false,
+    };
     let half_m = width_m / 2.0 + HALF_WALL_M + BESIDE_M;
     let [from_m, to_m] = [metres(wall.from) + half_m, metres(wall.to) - half_m];
-    let middle_m = match (is_snug, chance.is(0.5)) {
+    let is_first = if along == Along::LeftEnd { is_left_first(wall) } else { chance.is(0.5) };
+    let middle_m = match (is_snug, is_first) {
         (true, true) => from_m,
         (true, false) => to_m,
         // On a lattice of 5 cm.
@@ -153,6 +171,12 @@ fn keep_view(site: &mut Site<'_>, item: &Item, [x, y]: [f32; 2]) {
     let [dx, dy] = other.turn.apply([0.0, -HALF_M]);
     let block = Block::between(from, [x + dx, y + dy], HEIGHTS_M);
     site.kept_free.push(block);
+}
+
+/// Whether what has its back to a wall has the first end of that at its left.
+fn is_left_first(wall: Wall) -> bool {
+    let [x, y] = wall.faces.apply([0.0, 1.0]);
+    x + y < 0.0
 }
 
 /// The origin of an arrangement whose back is at a wall, its middle at a place along it.

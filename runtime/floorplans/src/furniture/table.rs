@@ -101,6 +101,8 @@ pub enum Place {
     Wall,
     /// In a corner, its back to one of the walls.
     Corner,
+    /// The same, with the other wall at its left.
+    LeftCorner,
     /// Free-standing.
     Middle,
     /// On a wall.
