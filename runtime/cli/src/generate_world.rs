@@ -72,7 +72,9 @@ impl GenerateWorld {
     fn refused(&self, error: &PlanError) -> anyhow::Error {
         match (error, &self.name) {
             // The name is that of a folder, which may be called as it is.
-            (PlanError::Name { .. } | PlanError::Taken { .. }, None) => bad_input(format!("{error}; or give a name by --name")),
+            (PlanError::Name { .. } | PlanError::Taken { .. }, None) => {
+                bad_input(format!("{error}; or give a name by --name"))
+            }
             _ => bad_input(error),
         }
     }

@@ -40,7 +40,8 @@ pub fn files(name: &str, plans: &FloorPlans, made: &[FloorPlan]) -> Vec<(String,
 
 fn head(name: &str, plans: &FloorPlans, made: &[FloorPlan]) -> String {
     let (kind, rooms, seed) = (plans.kind(), plans.rooms(), plans.seed());
-    let needs = kind.pack().map_or_else(String::new, |pack| format!(" Load it behind {pack}: --world {pack} --world {name}."));
+    let needs =
+        kind.pack().map_or_else(String::new, |pack| format!(" Load it behind {pack}: --world {pack} --world {name}."));
     let mut text = format!(
         "# Made by `cohabit generate-world --kind {kind} --rooms {rooms} --seed {seed} --count {count}`.\n\
          name = \"{name}\"\nversion = \"0.1.0\"\nlicence = \"CC0-1.0\"\n\

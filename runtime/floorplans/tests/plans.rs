@@ -286,3 +286,23 @@ fn a_television_stands_opposite_a_sofa() {
         assert!(count(&layout, "LivingRoom", &["Television"], catalog) == 1, "{}", layout.id);
     }
 }
+
+#[test]
+fn a_shower_has_walls_at_its_back_and_at_its_left() {
+    let plans = plans(Kind::Home, MOST, 11);
+    let mut showers = 0;
+    for number in 0..PLANS {
+        let layout = layout(&plans.plan(number).unwrap());
+        for shower in layout.placements.iter().filter(|placement| placement.instance.starts_with("Shower_")) {
+            let [x, y, _] = shower.at_m;
+            let (sin, cos) = shower.yaw_deg.to_radians().sin_cos();
+            // It is 0.9 m wide and deep, and its room ends 0.15 m from it at most.
+            for [ahead, left] in [[-0.6, 0.0], [0.0, 0.6]] {
+                let at = [x + ahead * cos - left * sin, y + ahead * sin + left * cos];
+                assert_ne!(layout.room_at(at[0], at[1]), Some(shower.room), "{}: {}", layout.id, shower.instance);
+            }
+            showers += 1;
+        }
+    }
+    assert!(showers >= PLANS as usize, "{showers} showers");
+}

@@ -85,7 +85,8 @@ fn spot(site: &Site<'_>, item: &Item, arrangement: &Arrangement, chance: &mut Ch
         Place::Opposite => opposite(site, arrangement, &item.of, chance),
         Place::Ceiling => {
             let largest = site.rects.iter().max_by(|one, other| one.area_m2().total_cmp(&other.area_m2()))?;
-            Some(([largest.west + largest.east, largest.south + largest.north].map(|sum| metres(sum) / 2.0), Turn::EAST))
+            let middle = [largest.west + largest.east, largest.south + largest.north].map(|sum| metres(sum) / 2.0);
+            Some((middle, Turn::EAST))
         }
     }
 }
