@@ -141,17 +141,20 @@ fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
 #[test]
 fn floor_plans_made_at_random_are_a_world_pack_in_which_missions_are_solved() {
     let scratch = Scratch::new("generate-world");
-    let pack = scratch.path("homes");
+    let pack = scratch.path("flats");
     let make = |folder: &str, workers: &str| {
         let how = ["--kind", "home", "--rooms", "5", "--seed", "7", "--count", "3", "--workers", workers];
-        told(&[&["generate-world", "--name", "homes", "--out", folder], how.as_slice()].concat())
+        told(&[&["generate-world", "--name", "flats", "--out", folder], how.as_slice()].concat())
     };
     let (text, code) = make(&pack, "2");
     assert_eq!(code, Some(0), "{text}");
-    let (text, code) = told(&["check", "--world", &pack]);
+    assert!(text.contains(&format!("cohabit check --world homes --world {pack}")), "{text}");
+    let (text, code) = told(&["check", "--world", "homes", "--world", &pack]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("4 of 4 floor plans and missions are playable"), "{text}");
-    let (text, _) = told(&["catalog", "rooms", "--world", &pack]);
+    for number in 0..3 {
+        assert!(text.contains(&format!("layouts/Home5_7_00{number}.toml: playable")), "{text}");
+    }
+    let (text, _) = told(&["catalog", "rooms", "--world", "homes", "--world", &pack]);
     assert!(text.contains("living room") && text.contains("LivingRoom"), "{text}");
 
     let other = scratch.path("again");
@@ -169,9 +172,10 @@ fn floor_plans_made_at_random_are_a_world_pack_in_which_missions_are_solved() {
          { name = \"place\", kind = \"surface\" }]\ngoals = [\"place Contains=thing\"]\n",
     );
     let missions = scratch.path("missions.jsonl");
-    let (text, code) = told(&["generate", &spec, "--world", &pack, "--count", "3", "--out", &missions]);
+    let worlds = ["--world", "homes", "--world", &pack];
+    let (text, code) = told(&[&["generate", &spec, "--count", "3", "--out", &missions], worlds.as_slice()].concat());
     assert_eq!(code, Some(0), "{text}");
-    let (text, code) = told(&["eval", &missions, "--world", &pack, "--agent", "expert", "--workers", "1"]);
+    let (text, code) = told(&[&["eval", &missions, "--agent", "expert", "--workers", "1"], worlds.as_slice()].concat());
     assert_eq!(code, Some(0), "{text}");
     assert!(!text.contains("not solved"), "{text}");
 }
@@ -179,7 +183,7 @@ fn floor_plans_made_at_random_are_a_world_pack_in_which_missions_are_solved() {
 #[test]
 fn floor_plans_that_cannot_be_made_are_refused_with_what_would_be_right() {
     let scratch = Scratch::new("no-plans");
-    let out = scratch.path("homes");
+    let out = scratch.path("flats");
     let check = |arguments: &[&str], expected: &str| {
         let (text, code) = told(&[&["generate-world", "--out", &out], arguments].concat());
         assert_eq!(code, Some(2), "{text}");
@@ -191,6 +195,7 @@ fn floor_plans_that_cannot_be_made_are_refused_with_what_would_be_right() {
     check(&["--kind", "office", "--rooms", "200"], "from 1 to 12");
     check(&["--kind", "home", "--count", "1000"], "from 1 to 990");
     check(&["--kind", "home", "--name", "My Homes"], "is no name of a world pack");
+    check(&["--kind", "home", "--name", "homes"], "the name of a world pack that comes with the program");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What is wrong with a floor plan, beyond its syntax: a plan without faults can be lived and worked in.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use super::fault::{LayoutFault, NOTE_PLACES, NoStand, NoWay, VIEWPOINTS};
 use super::floor::{FreeFloor, is_obstacle};
@@ -134,13 +134,15 @@ impl Layout {
             LayoutFault::OutOfReach { room: room.id, why }
         };
         faults.extend(out_of_reach.iter().map(fault));
-        let walkways = FreeFloor::new(self, catalog, WALKWAY_RADIUS_M);
+        let mut walkways: BTreeMap<RoomId, Vec<[f32; 2]>> = BTreeMap::new();
+        for (room, point) in FreeFloor::new(self, catalog, WALKWAY_RADIUS_M).points_m() {
+            walkways.entry(room).or_default().push(point);
+        }
         for solid in solids.iter().filter(|solid| solid.is_operable() && solid.placement.on.is_none()) {
-            let near = |(room, point): (RoomId, [f32; 2])| {
-                room == solid.placement.room && solid.print.distance_m(point) <= REACH_M
-            };
+            let is_near = |point: &[f32; 2]| solid.print.distance_m(*point) <= REACH_M;
+            let is_walked_to = walkways.get(&solid.placement.room).is_some_and(|points| points.iter().any(is_near));
             let is_of_reached = reached.iter().any(|room| room.id == solid.placement.room);
-            if is_of_reached && !walkways.points_m().any(near) && !self.is_door(solid.placement) {
+            if is_of_reached && !is_walked_to && !self.is_door(solid.placement) {
                 faults.push(LayoutFault::Unreachable { instance: solid.placement.instance.clone() });
             }
         }

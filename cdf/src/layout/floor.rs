@@ -68,8 +68,18 @@ impl FreeFloor {
 
     /// Whether the disc can stand here, give or take a cell.
     #[must_use]
-    pub fn has(&self, [x_m, y_m]: [f32; 2]) -> bool {
-        self.points_m().any(|(_, [x, y])| (x - x_m).abs() <= CELL_M && (y - y_m).abs() <= CELL_M)
+    pub fn has(&self, at_m: [f32; 2]) -> bool {
+        let rows = self.cells.len() / self.columns.max(1);
+        // Some more on both sides: rounding leaves none out.
+        let around = |axis: usize, count: usize| {
+            let first = cells_along(at_m[axis] - self.west_south_m[axis]).saturating_sub(4);
+            first..(first + 8).min(count)
+        };
+        let is_free_here = |index: usize| {
+            let [x, y] = self.point_m(index);
+            self.cells[index].is_some() && (x - at_m[0]).abs() <= CELL_M && (y - at_m[1]).abs() <= CELL_M
+        };
+        around(1, rows).any(|row| around(0, self.columns).any(|column| is_free_here(row * self.columns + column)))
     }
 
     fn point_m(&self, index: usize) -> [f32; 2] {

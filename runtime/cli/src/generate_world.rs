@@ -17,7 +17,8 @@ use crate::{
 };
 
 /// Makes floor plans at random, furnished, and writes them as a world pack, which `play`, `check`, `generate`, `eval` and all other
-/// commands with `--world` take. Each plan is checked as `check` does it.
+/// commands with `--world` take. Homes have rooms and classes of the world pack `homes`, which comes with the program: they take
+/// `--world homes` before it. Each plan is checked as `check` does it.
 #[derive(clap::Args)]
 pub struct GenerateWorld {
     /// What the plans are of: `office` or `home`
@@ -56,11 +57,10 @@ impl GenerateWorld {
         let made = self.make(&plans).map_err(bad_input)?;
         self.write(&pack::files(&name, &plans, &made))?;
         let (seconds, folder) = (began.elapsed().as_secs_f64(), shown(self.out.display()));
-        println!(
-            "{} floor plans in {seconds:.1} s: {folder}\nCheck them with: cohabit check --world {folder}",
-            made.len()
-        );
-        println!("Look around in the first: cohabit play look_around_{name} --world {folder}");
+        println!("{} floor plans in {seconds:.1} s: {folder}", made.len());
+        let needed = self.kind.pack().map_or_else(String::new, |pack| format!("--world {pack} "));
+        println!("Check them with: cohabit check {needed}--world {folder}");
+        println!("Look around in the first: cohabit play look_around_{name} {needed}--world {folder}");
         Ok(())
     }
 
@@ -72,7 +72,9 @@ impl GenerateWorld {
     fn refused(&self, error: &PlanError) -> anyhow::Error {
         match (error, &self.name) {
             // The name is that of a folder, which may be called as it is.
-            (PlanError::Name { .. }, None) => bad_input(format!("{error}; or give a name by --name")),
+            (PlanError::Name { .. } | PlanError::Taken { .. }, None) => {
+                bad_input(format!("{error}; or give a name by --name"))
+            }
             _ => bad_input(error),
         }
     }

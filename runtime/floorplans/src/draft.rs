@@ -1,5 +1,7 @@
 //! A floor plan with all that is in it, drawn step by step: which rooms, outline, rooms, doors, furniture, small things, places.
 
+use std::sync::Arc;
+
 use cohabit_cdf::{Catalog, RoomId, layout::OpeningKind};
 
 use crate::{
@@ -26,7 +28,7 @@ const CIRCUIT: usize = 5;
 /// The tables that floor plans are drawn from.
 #[derive(Clone, Debug)]
 pub struct Tables {
-    pub catalog: Catalog,
+    pub catalog: Arc<Catalog>,
     pub rooms: RoomTable,
     pub furniture: FurnitureTable,
     pub things: ThingTable,
@@ -126,7 +128,7 @@ impl<'a> Shell<'a> {
         let at = |id: &RoomId| wanted.iter().position(|wanted| room_id(wanted) == *id);
         let entry =
             door.rooms.iter().filter_map(at).find_map(|room| openings::entry(&floors, &gaps, room, width, chance));
-        gaps.extend(openings::windows(&floors, entry, chance));
+        gaps.extend(openings::windows(&floors, entry, tables.rooms.window.width(), chance));
         Some(Self { floors, wanted, gaps, entry })
     }
 
@@ -156,10 +158,13 @@ impl<'a> Shell<'a> {
 
     /// The room with what it has for certain.
     fn site<'t>(&self, room: usize, has_fuse_box: bool, tables: &'t Tables, chance: &mut Chance) -> Option<Site<'t>> {
-        let own = self.gaps.iter().filter(|gap| gap.kind != OpeningKind::Window && gap.between.contains(&room));
-        let doors: Vec<(Wall, i32)> = own.map(|gap| (gap.wall_of(room), gap.middle)).collect();
+        let own = self.gaps.iter().filter(|gap| gap.between.contains(&room));
+        let (windows, ways): (Vec<&Gap>, Vec<&Gap>) = own.partition(|gap| gap.kind == OpeningKind::Window);
+        let place = |gap: &&Gap| (gap.wall_of(room), gap.middle);
+        let doors: Vec<(Wall, i32)> = ways.iter().map(place).collect();
         let kept_free = fixtures::kept_free(room, &self.gaps, self.entry);
         let mut site = Site::new(&tables.catalog, &self.floors[room].rects, &doors, kept_free);
+        site.windows = windows.iter().map(place).collect();
         let entry = self.entry.filter(|entry| entry.room == room);
         let has_entry =
             entry.is_none_or(|entry| fixtures::add_entry(&mut site, &tables.rooms.entrance.class, entry, chance));

@@ -250,10 +250,18 @@ impl Block {
         Self { low: [west - by_m, south - by_m, bottom], high: [east + by_m, north + by_m, top] }
     }
 
-    /// Whether two share space.
+    /// Whether it is as thin as a rug, on which others stand.
+    fn is_flat(&self) -> bool {
+        const FLAT_M: f32 = 0.003;
+        self.high[2] - self.low[2] < FLAT_M
+    }
+
+    /// Whether two share space. What is flat takes no space but of its like.
     pub fn overlaps(&self, other: &Self) -> bool {
         const SLACK_M: f32 = 0.001;
-        (0..3).all(|axis| self.low[axis] + SLACK_M < other.high[axis] && other.low[axis] + SLACK_M < self.high[axis])
+        let is_shared =
+            |axis: usize| self.low[axis] + SLACK_M < other.high[axis] && other.low[axis] + SLACK_M < self.high[axis];
+        self.is_flat() == other.is_flat() && (0..3).all(is_shared)
     }
 
     /// How far a point of the floor is from it, m; 0 inside.
@@ -289,6 +297,15 @@ mod tests {
             assert_eq!(turn.inverse().apply(turn.apply([2.0, 3.0])), [2.0, 3.0]);
             assert_eq!(Turn::of_degrees(turn.yaw_deg() as i32), turn);
         }
+    }
+
+    #[test]
+    fn furniture_stands_on_a_rug_and_rugs_lie_side_by_side() {
+        let block = |x: f32, height_m: f32| Block::of([1.0, 1.0, height_m], [x, 0.0, 0.0], Turn::EAST);
+        let (rug, table) = (block(0.0, 0.002), block(0.2, 0.5));
+        assert!(!rug.overlaps(&table) && !table.overlaps(&rug));
+        assert!(rug.overlaps(&block(0.5, 0.002)) && !rug.overlaps(&block(1.1, 0.002)));
+        assert!(table.overlaps(&block(0.5, 0.9)));
     }
 
     #[test]

@@ -35,7 +35,8 @@ pub struct Ground {
     blocked: Vec<u8>,
     /// The cells behind each door, of which one is walked on.
     doors: Vec<[usize; 2]>,
-    usables: Vec<Usable>,
+    /// The cells from which each thing is used, of which one is walked on.
+    usables: Vec<Vec<usize>>,
     /// What can be walked on, as of the last look.
     reached: Vec<bool>,
 }
@@ -111,7 +112,8 @@ impl Ground {
         for cell in &cells {
             self.blocked[*cell] = self.blocked[*cell].saturating_add(1);
         }
-        self.usables.extend(usables);
+        let used_from: Vec<Vec<usize>> = usables.iter().map(|usable| self.cells_before(usable)).collect();
+        self.usables.extend(used_from);
         let reached = self.flood();
         if self.is_sound(&reached) {
             self.reached = reached;
@@ -160,13 +162,14 @@ impl Ground {
         let is_door_reached = |cells: &[usize; 2]| cells.iter().any(|cell| reached[*cell]);
         self.doors.iter().all(is_door_reached)
             && self.first_free().is_some_and(|cell| reached[cell])
-            && self.usables.iter().all(|usable| self.is_usable(usable, reached))
+            && self.usables.iter().all(|cells| cells.iter().any(|cell| reached[*cell]))
     }
 
-    fn is_usable(&self, usable: &Usable, reached: &[bool]) -> bool {
+    /// The cells from which something is used.
+    fn cells_before(&self, usable: &Usable) -> Vec<usize> {
         let is_before =
             |cell: &usize| usable.front.is_none_or(|front| is_before(&usable.block, front, self.point(*cell)));
-        self.near(&usable.block, REACH_M).iter().filter(|cell| reached[**cell]).any(is_before)
+        self.near(&usable.block, REACH_M).into_iter().filter(is_before).collect()
     }
 
     /// The middles of the cells that can be walked on, m, row by row from the south.

@@ -1,8 +1,8 @@
 //! Kinds of buildings, and the rooms that each may have.
 
-use std::{fmt, str::FromStr};
+use std::{fmt, str::FromStr, sync::Arc};
 
-use cohabit_cdf::{RoomEntry, RoomId};
+use cohabit_cdf::{Catalog, RoomEntry, RoomId, WorldData, WorldPack, world_pack::builtin_files};
 use serde::Deserialize;
 
 /// A kind of building.
@@ -32,13 +32,32 @@ impl Kind {
         }
     }
 
+    /// The world pack, of those that come with the program, whose rooms and classes the plans have: a world with such plans has it too.
+    #[must_use]
+    pub const fn pack(self) -> Option<&'static str> {
+        match self {
+            Self::Office => None,
+            Self::Home => Some("homes"),
+        }
+    }
+
     /// The rooms that it may have.
     pub(crate) fn rooms(self) -> RoomTable {
         let text = match self {
-            Self::Office => include_str!("../data/office.toml"),
-            Self::Home => include_str!("../data/home.toml"),
+            Self::Office => include_str!("../data/office/rooms.toml"),
+            Self::Home => include_str!("../data/home/rooms.toml"),
         };
         toml::from_str(text).expect("invariant: the tables of rooms parse")
+    }
+
+    /// The classes and rooms of a world with its plans, without the plans and missions of its pack.
+    pub(crate) fn catalog(self) -> Arc<Catalog> {
+        let Some(name) = self.pack() else { return Arc::new(Catalog::builtin()) };
+        let mut files = builtin_files(name).expect("invariant: the pack comes with the program");
+        files.retain(|file| !file.path.starts_with("layouts/") && !file.path.starts_with("missions/"));
+        let pack = WorldPack::parse(name, files).expect("invariant: a pack that comes with the program is sound");
+        let world = WorldData::layered(vec![pack]).expect("invariant: a pack that comes with the program is sound");
+        Arc::clone(world.catalog())
     }
 }
 
@@ -64,6 +83,7 @@ pub(crate) struct RoomTable {
     pub rooms: Vec<RoomType>,
     pub hallway: Hallway,
     pub entrance: Entrance,
+    pub window: Window,
 }
 
 /// A type of room.
@@ -84,7 +104,7 @@ pub(crate) struct RoomType {
     pub openness: f64,
     pub floors: Vec<(String, String)>,
     pub walls: Vec<String>,
-    /// What people read, for a room that is not built in.
+    /// What people read, for a room that is neither built in nor of the kind's pack.
     #[serde(default)]
     name: Option<String>,
     #[serde(default)]
@@ -94,7 +114,7 @@ pub(crate) struct RoomType {
 }
 
 impl RoomType {
-    /// What a world pack says of it; nothing, if it is built in.
+    /// What a world pack of plans says of it; nothing, if it is there without.
     pub fn entry(&self) -> Option<RoomEntry> {
         Some(RoomEntry {
             id: self.id,
@@ -130,6 +150,21 @@ pub(crate) struct Entrance {
     pub class: String,
     /// The rooms that may have it, the best first.
     pub rooms: Vec<RoomId>,
+}
+
+/// Windows of a kind of building.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Window {
+    /// The narrowest and the widest.
+    pub width_m: [f32; 2],
+}
+
+impl Window {
+    /// The narrowest and the widest, dm.
+    pub fn width(self) -> [i32; 2] {
+        self.width_m.map(|width_m| (width_m * 10.0).round() as i32)
+    }
 }
 
 impl Hallway {

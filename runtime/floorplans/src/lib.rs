@@ -6,7 +6,8 @@
 //! fuse boxes (`fixtures`), furniture (`furniture`), small things (`things`), where to stand and where notes can be stuck (`places`). What
 //! comes of it is checked by `cohabit-cdf` as every floor plan is; a plan with a fault is drawn anew.
 //!
-//! What rooms there are and what is in them stands in tables: `data/office.toml`, `data/home.toml`, `data/furniture.toml`, `data/things.toml`.
+//! What rooms there are and what is in them stands in tables: in `data/office` and `data/home`. Offices have built-in classes alone; homes
+//! have those of the world pack that comes with the program as [`Kind::pack`] besides, so their plans are read with it.
 //!
 //! ```
 //! use cohabit_floorplans::{FloorPlans, Kind};

@@ -205,13 +205,13 @@ fn outer(floors: &[Floor], room: usize) -> Vec<Wall> {
 }
 
 /// Windows in the outer walls of all rooms, beside where people come in.
-pub fn windows(floors: &[Floor], entry: Option<Entry>, chance: &mut Chance) -> Vec<Gap> {
+pub fn windows(floors: &[Floor], entry: Option<Entry>, width: [i32; 2], chance: &mut Chance) -> Vec<Gap> {
     let mut all = Vec::new();
     for room in 0..floors.len() {
         for wall in outer(floors, room) {
             if chance.is(WINDOWS) {
                 all.extend(
-                    windows_in(wall, room, chance).filter(|gap| entry.is_none_or(|entry| is_beside(gap, entry))),
+                    windows_in(wall, room, width, chance).filter(|gap| entry.is_none_or(|entry| is_beside(gap, entry))),
                 );
             }
         }
@@ -219,9 +219,14 @@ pub fn windows(floors: &[Floor], entry: Option<Entry>, chance: &mut Chance) -> V
     all
 }
 
-/// Windows at equal distances along a wall.
-fn windows_in(wall: Wall, room: usize, chance: &mut Chance) -> impl Iterator<Item = Gap> + use<> {
-    let width = chance.whole(6, 10) * 2;
+/// Windows at equal distances along a wall, of an even width from and to.
+fn windows_in(
+    wall: Wall,
+    room: usize,
+    [narrowest, widest]: [i32; 2],
+    chance: &mut Chance,
+) -> impl Iterator<Item = Gap> + use<> {
+    let width = chance.whole(narrowest / 2, widest / 2) * 2;
     let count = (wall.length() - 6) / (width + 14);
     (0..count).map(move |index| {
         let middle = wall.from + wall.length() * (2 * index + 1) / (2 * count);

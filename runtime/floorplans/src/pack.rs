@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use cohabit_cdf::{
     RoomEntry,
-    world_pack::{HEAD, is_name},
+    world_pack::{HEAD, builtin_names, is_name},
 };
 
 use crate::plans::{FloorPlan, FloorPlans, PlanError};
@@ -15,10 +15,13 @@ pub const MOST_PLANS: usize = 990;
 /// Whether a pack may have this name and so many plans.
 ///
 /// # Errors
-/// [`PlanError::Name`] or [`PlanError::Count`].
+/// [`PlanError::Name`], [`PlanError::Taken`] or [`PlanError::Count`].
 pub fn check(name: &str, count: usize) -> Result<(), PlanError> {
     if !is_name(name) {
         return Err(PlanError::Name { name: name.to_owned() });
+    }
+    if builtin_names().any(|other| other == name) {
+        return Err(PlanError::Taken { name: name.to_owned() });
     }
     if !(1..=MOST_PLANS).contains(&count) {
         return Err(PlanError::Count { count, most: MOST_PLANS });
@@ -37,10 +40,12 @@ pub fn files(name: &str, plans: &FloorPlans, made: &[FloorPlan]) -> Vec<(String,
 
 fn head(name: &str, plans: &FloorPlans, made: &[FloorPlan]) -> String {
     let (kind, rooms, seed) = (plans.kind(), plans.rooms(), plans.seed());
+    let needs =
+        kind.pack().map_or_else(String::new, |pack| format!(" Load it behind {pack}: --world {pack} --world {name}."));
     let mut text = format!(
         "# Made by `cohabit generate-world --kind {kind} --rooms {rooms} --seed {seed} --count {count}`.\n\
          name = \"{name}\"\nversion = \"0.1.0\"\nlicence = \"CC0-1.0\"\n\
-         description = \"{count} floor plans of {kind}s with {rooms} rooms each, made at random from the seed {seed}.\"\n",
+         description = \"{count} floor plans of {kind}s with {rooms} rooms each, made at random from the seed {seed}.{needs}\"\n",
         count = made.len()
     );
     let is_there = |entry: &RoomEntry| made.iter().any(|plan| plan.rooms.contains(&entry.id));

@@ -1,6 +1,6 @@
 //! Floor plans by their number: each follows from the seed and its number alone, and is checked before it is handed out.
 
-use cohabit_cdf::{Catalog, Layout, RoomEntry, RoomId};
+use cohabit_cdf::{Layout, RoomEntry, RoomId};
 
 use crate::{
     chance::Chance,
@@ -36,6 +36,12 @@ pub enum PlanError {
     /// A pack has no such name.
     #[error("`{name}` is no name of a world pack: {}", cohabit_cdf::world_pack::NAME_RULE)]
     Name {
+        /// What was asked for.
+        name: String,
+    },
+    /// A pack that comes with the program has this name.
+    #[error("`{name}` is the name of a world pack that comes with the program: take another one")]
+    Taken {
         /// What was asked for.
         name: String,
     },
@@ -88,10 +94,10 @@ impl FloorPlans {
             return Err(PlanError::Rooms { rooms, kind, most });
         }
         let tables = Tables {
-            catalog: Catalog::builtin(),
+            catalog: kind.catalog(),
             rooms: table,
-            furniture: FurnitureTable::builtin(),
-            things: ThingTable::builtin(),
+            furniture: FurnitureTable::of(kind),
+            things: ThingTable::of(kind),
         };
         Ok(Self { kind, rooms, seed, tables })
     }
@@ -114,7 +120,7 @@ impl FloorPlans {
         self.rooms
     }
 
-    /// What a world says of the rooms that plans of this kind may have, beside the built-in ones.
+    /// What a world says of the rooms that plans of this kind may have, beside those that are built in or of [`Kind::pack`].
     pub fn room_entries(&self) -> impl Iterator<Item = RoomEntry> + '_ {
         self.tables.rooms.rooms.iter().filter_map(|room| room.entry())
     }

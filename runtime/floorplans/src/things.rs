@@ -1,4 +1,4 @@
-//! Small things on and in furniture, by the table in `data/things.toml`.
+//! Small things on and in furniture, by the tables in `data`. `data/office/things.toml` says what the fields mean.
 
 use cohabit_cdf::{
     Catalog, ClassId, ObjectClass, RoomId,
@@ -6,7 +6,18 @@ use cohabit_cdf::{
 };
 use serde::Deserialize;
 
-use crate::{chance::Chance, furniture::Placed, geometry::Block};
+use crate::{chance::Chance, furniture::Placed, geometry::Block, kind::Kind};
+
+/// The files of each kind of building.
+const OFFICE: &[&str] = &[include_str!("../data/office/things.toml")];
+// Those that name rooms come first: the first entry that is meant counts.
+const HOME: &[&str] = &[
+    include_str!("../data/home/things_bedrooms.toml"),
+    include_str!("../data/home/things_bathrooms.toml"),
+    include_str!("../data/home/things_kitchen.toml"),
+    include_str!("../data/home/things_living.toml"),
+    include_str!("../data/home/things_workrooms.toml"),
+];
 
 /// Half the width of what stands on an anchor, m, as plans are checked by.
 const ANCHOR_M: f32 = 0.06;
@@ -19,7 +30,7 @@ const TURN_SINE: f32 = 0.208;
 const TRIES: usize = 12;
 
 /// What is on and in furniture.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThingTable {
     #[serde(rename = "on")]
@@ -37,6 +48,12 @@ struct Entry {
     /// Whether these are what a holder with keys takes.
     #[serde(default)]
     keys: bool,
+    /// Whether they are put at its anchors, whatever the room that these leave beside each other.
+    #[serde(default)]
+    anchors: bool,
+    /// Whether they lie square to it.
+    #[serde(default)]
+    square: bool,
     things: Vec<Prior>,
 }
 
@@ -75,8 +92,14 @@ struct Cover {
 }
 
 impl ThingTable {
-    pub fn builtin() -> Self {
-        toml::from_str(include_str!("../data/things.toml")).expect("invariant: the table of things parses")
+    /// That of a kind of building.
+    pub fn of(kind: Kind) -> Self {
+        let files = if kind == Kind::Office { OFFICE } else { HOME };
+        files.iter().fold(Self::default(), |mut table, text| {
+            let file: Self = toml::from_str(text).expect("invariant: the table of things parses");
+            table.entries.extend(file.entries);
+            table
+        })
     }
 
     /// What is on a class of furniture in a room.
@@ -130,6 +153,7 @@ impl Holder<'_> {
     fn fill(&self, entry: &Entry, mut covers: Vec<Cover>, chance: &mut Chance) -> Vec<Thing> {
         let (mut things, mut drawn) = (Vec::new(), vec![0; entry.things.len()]);
         let wanted = entry.count[0] + chance.below(entry.count[1] + 1 - entry.count[0]);
+        let covered = self.covered(&covers);
         for _ in 0..wanted {
             let weights: Vec<f32> = (entry.things.iter().zip(&drawn))
                 .map(|(prior, drawn)| if *drawn < prior.most { prior.weight } else { 0.0 })
@@ -141,10 +165,12 @@ impl Holder<'_> {
             drawn[kind] += 1;
             let class = chance.pick(&entry.things[kind].any).and_then(|id| self.catalog.find(id));
             let Some(class) = class else { continue };
-            let thing = if self.has_anchors_alone() {
+            let thing = if entry.anchors {
+                self.at_some_anchor(class, things.len() + covered)
+            } else if self.has_anchors_alone() {
                 self.at_anchor(class, things.len(), wanted)
             } else {
-                self.somewhere(class, &mut covers, chance)
+                self.somewhere(class, &mut covers, entry.square, chance)
             };
             things.extend(thing);
         }
@@ -179,15 +205,30 @@ impl Holder<'_> {
         })
     }
 
+    /// At the next free anchor below which it is not too high.
+    fn at_some_anchor(&self, class: ClassId, taken: usize) -> Option<Thing> {
+        let height_m = self.catalog.class(class).size_m[2];
+        let is_fit = self.receptacle.surfaces.iter().any(|surface| height_m <= surface.clearance_m);
+        let yaw_deg = within_turn(self.placed.turn.yaw_deg());
+        (is_fit && taken < self.most_taken()).then_some(Thing { class, holder: self.index, at_m: None, yaw_deg })
+    }
+
     /// A free place on one of its surfaces.
-    fn somewhere(&self, class: ClassId, covers: &mut Vec<Cover>, chance: &mut Chance) -> Option<Thing> {
+    fn somewhere(
+        &self,
+        class: ClassId,
+        covers: &mut Vec<Cover>,
+        is_square: bool,
+        chance: &mut Chance,
+    ) -> Option<Thing> {
         let kind = self.catalog.class(class);
         for _ in 0..TRIES {
             let surface = chance.pick(&self.receptacle.surfaces)?;
             let (quarter, aside_deg) = (chance.below(4) as i32, chance.whole(-TURN_DEG, TURN_DEG));
+            let (aside_deg, sine) = if is_square { (0, 0.0) } else { (aside_deg, TURN_SINE) };
             let [depth, width, height] = kind.size_m;
             let [depth, width] = if quarter % 2 == 0 { [depth, width] } else { [width, depth] };
-            let half = [depth + width * TURN_SINE, width + depth * TURN_SINE].map(|side| side / 2.0);
+            let half = [depth + width * sine, width + depth * sine].map(|side| side / 2.0);
             if height > surface.clearance_m || (0..2).any(|axis| half[axis] * 2.0 > surface.size_m[axis]) {
                 continue;
             }
@@ -219,9 +260,14 @@ impl Holder<'_> {
 
     /// Whether more than half of the anchors would be covered.
     fn is_crowded(&self, covers: &[Cover], more: Cover) -> bool {
+        let all: Vec<Cover> = covers.iter().copied().chain([more]).collect();
+        self.covered(&all) > self.most_taken()
+    }
+
+    /// How many of the anchors are covered.
+    fn covered(&self, covers: &[Cover]) -> usize {
         let anchors = self.receptacle.surfaces.iter().flat_map(anchors);
-        let is_covered = |at: &[f32; 3]| covers.iter().chain([&more]).any(|cover| cover.has_anchor(*at));
-        anchors.filter(is_covered).count() > self.most_taken()
+        anchors.filter(|at| covers.iter().any(|cover| cover.has_anchor(*at))).count()
     }
 }
 
@@ -278,9 +324,8 @@ fn within_turn(yaw_deg: f32) -> f32 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn all_that_the_table_names_is_there_and_fits_somewhere() {
-        let (catalog, table) = (Catalog::builtin(), ThingTable::builtin());
+    fn check_names(kind: Kind) {
+        let (catalog, table) = (kind.catalog(), ThingTable::of(kind));
         for entry in &table.entries {
             for holder in &entry.holders {
                 let class = catalog.class(catalog.find(holder).unwrap());
@@ -288,12 +333,18 @@ mod tests {
                 for id in entry.things.iter().flat_map(|prior| &prior.any) {
                     let thing = catalog.class(catalog.find(id).unwrap_or_else(|| panic!("there is no `{id}`")));
                     let is_fit = |surface: &Surface| {
-                        [false, true].into_iter().any(|quarter| is_fit(thing, surface, quarter, true))
+                        let fits = |quarter: bool| is_fit(thing, surface, quarter, true);
+                        if entry.anchors { thing.size_m[2] <= surface.clearance_m } else { fits(false) || fits(true) }
                     };
                     assert!(receptacle.surfaces.iter().any(is_fit), "`{id}` does not fit on `{holder}`");
                     assert_eq!(entry.keys, receptacle.keys.contains(id), "`{id}` and the keys of `{holder}`");
                 }
             }
         }
+    }
+
+    #[test]
+    fn all_that_the_tables_name_is_there_and_fits_somewhere() {
+        Kind::ALL.into_iter().for_each(check_names);
     }
 }

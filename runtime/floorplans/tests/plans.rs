@@ -7,6 +7,7 @@ use cohabit_cdf::{
     Catalog, Layout, PackFile, RoomId, WorldData, WorldPack,
     layout::{OpeningKind, Placement},
     mission,
+    world_pack::builtin_files,
 };
 use cohabit_floorplans::{FloorPlan, FloorPlans, Kind, PlanError, pack};
 
@@ -17,6 +18,11 @@ const MOST: usize = 12;
 
 fn plans(kind: Kind, rooms: usize, seed: u64) -> FloorPlans {
     FloorPlans::new(kind, rooms, seed).unwrap()
+}
+
+/// The world of plans of a kind: what is built in, and the pack that they need.
+fn base(kind: Kind) -> Vec<WorldPack> {
+    kind.pack().map(|name| WorldPack::parse(name, builtin_files(name).unwrap()).unwrap()).into_iter().collect()
 }
 
 fn layout(plan: &FloorPlan) -> Layout {
@@ -121,18 +127,19 @@ fn check_rooms(layout: &Layout) {
 
 #[test]
 fn plans_of_all_kinds_and_sizes_are_sound() {
-    let catalog = Catalog::builtin();
     for kind in Kind::ALL {
+        let world = WorldData::layered(base(kind)).unwrap();
+        let catalog = world.catalog();
         let mut discarded = 0;
         for rooms in 1..=MOST {
             let plans = plans(kind, rooms, 3);
             for number in 0..PLANS {
                 let plan = plans.plan(number).unwrap();
                 let layout = layout(&plan);
-                let faults: Vec<String> = layout.faults(&catalog).iter().map(ToString::to_string).collect();
+                let faults: Vec<String> = layout.faults(catalog).iter().map(ToString::to_string).collect();
                 assert!(faults.is_empty(), "{}: {faults:?}", plan.id);
                 assert_eq!(layout.rooms.len() - usize::from(rooms >= 4), rooms, "{}", plan.id);
-                check_space(&layout, &catalog);
+                check_space(&layout, catalog);
                 check_ways(&layout);
                 check_rooms(&layout);
                 discarded += plan.discarded;
@@ -163,9 +170,10 @@ fn what_cannot_be_made_is_refused_in_words() {
         assert!(text.contains(&format!("of {rooms} rooms")) && text.contains("from 1 to 12"), "{text}");
     }
     assert!("castle".parse::<Kind>().unwrap_err().to_string().contains("write `office` or `home`"));
-    assert_eq!(pack::check("homes", 0), Err(PlanError::Count { count: 0, most: pack::MOST_PLANS }));
-    assert!(pack::check("My Homes", 1).unwrap_err().to_string().contains("begin with a small letter"));
-    assert_eq!(pack::check("homes", pack::MOST_PLANS), Ok(()));
+    assert_eq!(pack::check("flats", 0), Err(PlanError::Count { count: 0, most: pack::MOST_PLANS }));
+    assert!(pack::check("My Flats", 1).unwrap_err().to_string().contains("begin with a small letter"));
+    assert_eq!(pack::check("homes", 1), Err(PlanError::Taken { name: "homes".to_owned() }));
+    assert_eq!(pack::check("flats", pack::MOST_PLANS), Ok(()));
 }
 
 fn read(name: &str, kind: Kind, rooms: usize, count: u64) -> WorldPack {
@@ -176,20 +184,125 @@ fn read(name: &str, kind: Kind, rooms: usize, count: u64) -> WorldPack {
     WorldPack::parse(name, files).unwrap()
 }
 
-#[test]
-fn plans_make_a_world_pack_with_a_mission() {
-    let packs = [read("homes", Kind::Home, 12, 2), read("offices", Kind::Office, 12, 2)];
-    let names: Vec<Vec<String>> = packs.iter().map(|pack| pack.plans().map(str::to_owned).collect()).collect();
-    assert_eq!(names[0], ["Home12_5_000", "Home12_5_001"]);
-    let world = WorldData::layered(packs.to_vec()).unwrap();
-    for name in names.iter().flatten() {
+/// Packs of plans make a world with the pack that they need, and their missions are about these plans.
+fn check_packs(kind: Kind, packs: Vec<WorldPack>) {
+    let names: Vec<String> = packs.iter().flat_map(WorldPack::plans).map(str::to_owned).collect();
+    let missions: Vec<(String, String)> =
+        packs.iter().flat_map(WorldPack::missions).map(|(file, text)| (file.to_owned(), text.to_owned())).collect();
+    assert_eq!(missions.len(), packs.len());
+    let world = WorldData::layered(base(kind).into_iter().chain(packs).collect()).unwrap();
+    for name in &names {
         assert!(Layout::find(name, world.catalog()).is_ok(), "{name}");
     }
-    for (file, text) in packs.iter().flat_map(WorldPack::missions) {
+    for (file, text) in &missions {
         let sources = mission::sources(file, text);
         let checked = sources[0].read(world.catalog()).unwrap();
-        assert!(names.iter().flatten().any(|name| *name == checked.mission.layout), "{file}");
+        assert!(names.contains(&checked.mission.layout), "{file}");
         let warnings: Vec<String> = checked.warnings.iter().map(ToString::to_string).collect();
         assert!(warnings.len() == 1 && warnings[0].contains("no goals"), "{warnings:?}");
     }
+}
+
+#[test]
+fn plans_make_a_world_pack_with_a_mission() {
+    let offices = read("offices", Kind::Office, 12, 2);
+    assert_eq!(offices.plans().collect::<Vec<_>>(), ["Office12_5_000", "Office12_5_001"]);
+    check_packs(Kind::Office, vec![offices]);
+}
+
+#[test]
+fn packs_of_homes_are_loaded_together_behind_the_pack_that_they_need() {
+    let [large, small] = [read("houses", Kind::Home, 12, 2), read("flats", Kind::Home, 5, 1)];
+    assert_eq!(large.plans().collect::<Vec<_>>(), ["Home12_5_000", "Home12_5_001"]);
+    assert!(large.description().contains("--world homes --world houses"), "{}", large.description());
+    let alone = WorldData::layered(vec![small.clone()]).unwrap_err().to_string();
+    assert!(alone.contains("there is no such room"), "{alone}");
+    check_packs(Kind::Home, vec![large, small]);
+}
+
+/// How many of some classes a room has.
+fn count(layout: &Layout, room: &str, classes: &[&str], catalog: &Catalog) -> usize {
+    let own = layout.placements.iter().filter(|placement| placement.room.id() == room);
+    let class = |placement: &Placement| &catalog.class(catalog.class_of_instance(&placement.instance).unwrap()).id;
+    own.filter(|placement| classes.contains(&class(placement).as_str())).count()
+}
+
+/// What each room of a home has for certain: one of some classes.
+const FURNISHED: &[(&str, &[&str])] = &[
+    ("LivingRoom", &["Sofa_Three", "Sofa_Two"]),
+    ("LivingRoom", &["Television"]),
+    ("LivingRoom", &["Coffee_Table"]),
+    ("LivingRoom", &["Bookcase"]),
+    ("Kitchen", &["Stove"]),
+    ("Kitchen", &["Extractor_Hood"]),
+    ("Kitchen", &["Fridge_Freezer"]),
+    ("Kitchen", &["Kitchen_Sink_Double"]),
+    ("Kitchen", &["Dishwasher"]),
+    ("Bedroom", &["Bed_Double", "Bed_Single"]),
+    ("Bedroom", &["Nightstand"]),
+    ("Bedroom", &["Wardrobe"]),
+    ("GuestRoom", &["Bed_Double", "Bed_Single"]),
+    ("ChildrensRoom", &["Bunk_Bed", "Cot", "Bed_Single"]),
+    ("ChildrensRoom", &["Toy_Box"]),
+    ("Bathroom", &["Bathtub", "Shower"]),
+    ("Bathroom", &["Toilet"]),
+    ("Bathroom", &["Washbasin"]),
+    ("GuestBathroom", &["Shower"]),
+    ("UtilityRoom", &["Washing_Machine"]),
+    ("UtilityRoom", &["Tumble_Dryer"]),
+    ("UtilityRoom", &["Storage_Shelf"]),
+    ("DiningRoom", &["Dining_Table", "TableRound_02"]),
+    ("Study", &["Writing_Desk"]),
+    ("Library", &["Bookcase"]),
+    ("HobbyRoom", &["Workbench_Home"]),
+];
+
+#[test]
+fn homes_have_what_people_live_with() {
+    let world = WorldData::layered(base(Kind::Home)).unwrap();
+    let (catalog, plans) = (world.catalog(), plans(Kind::Home, MOST, 11));
+    for number in 0..PLANS {
+        let layout = layout(&plans.plan(number).unwrap());
+        for (room, classes) in FURNISHED {
+            assert!(count(&layout, room, classes, catalog) > 0, "{}: {room} has none of {classes:?}", layout.id);
+        }
+    }
+}
+
+#[test]
+fn a_television_stands_opposite_a_sofa() {
+    let world = WorldData::layered(base(Kind::Home)).unwrap();
+    let (catalog, plans) = (world.catalog(), plans(Kind::Home, 1, 11));
+    for number in 0..4 * PLANS {
+        let layout = layout(&plans.plan(number).unwrap());
+        let find = |class: &str| layout.placements.iter().find(|placement| placement.instance.starts_with(class));
+        let (sofa, stand) = (find("Sofa_").unwrap(), find("TV_Stand").unwrap());
+        let apart = (sofa.yaw_deg - stand.yaw_deg).abs();
+        assert_eq!(apart, 180.0, "{}: they do not face each other", layout.id);
+        let (sin, cos) = sofa.yaw_deg.to_radians().sin_cos();
+        let [x, y] = [0, 1].map(|axis| stand.at_m[axis] - sofa.at_m[axis]);
+        let (ahead, aside) = (x * cos + y * sin, y * cos - x * sin);
+        assert!(ahead > 1.5 && aside.abs() <= 0.6, "{}: {ahead} m ahead, {aside} m aside", layout.id);
+        assert!(count(&layout, "LivingRoom", &["Television"], catalog) == 1, "{}", layout.id);
+    }
+}
+
+#[test]
+fn a_shower_has_walls_at_its_back_and_at_its_left() {
+    let plans = plans(Kind::Home, MOST, 11);
+    let mut showers = 0;
+    for number in 0..PLANS {
+        let layout = layout(&plans.plan(number).unwrap());
+        for shower in layout.placements.iter().filter(|placement| placement.instance.starts_with("Shower_")) {
+            let [x, y, _] = shower.at_m;
+            let (sin, cos) = shower.yaw_deg.to_radians().sin_cos();
+            // It is 0.9 m wide and deep, and its room ends 0.15 m from it at most.
+            for [ahead, left] in [[-0.6, 0.0], [0.0, 0.6]] {
+                let at = [x + ahead * cos - left * sin, y + ahead * sin + left * cos];
+                assert_ne!(layout.room_at(at[0], at[1]), Some(shower.room), "{}: {}", layout.id, shower.instance);
+            }
+            showers += 1;
+        }
+    }
+    assert!(showers >= PLANS as usize, "{showers} showers");
 }

@@ -65,7 +65,10 @@ impl Arrangement {
             let size_m = catalog.class(class).size_m;
             let works = part.works.and_then(|other| piece_of.get(other).copied().flatten());
             let piece = match of {
-                None => Placed { class, at_m: [0.0; 3], turn: Turn::EAST, on: None, works, size_m },
+                None => {
+                    let turn = Turn::of_degrees(part.turn_deg);
+                    Placed { class, at_m: [0.0; 3], turn, on: None, works, size_m }
+                }
                 Some(of) => placed(part, class, size_m, of, &pieces, catalog, works),
             };
             piece_of.push(Some(pieces.len()));
@@ -107,7 +110,7 @@ fn placed(
     let other = &pieces[of];
     let turned = Turn::of_degrees(part.turn_deg);
     if part.on.is_some() {
-        let height = top_m(catalog, other.class);
+        let height = top_m(catalog, other.class, part.surface);
         let at_m = [part.at_m[0], part.at_m[1], height];
         return Placed { class, at_m, turn: other.turn.then(turned), on: Some(of), works, size_m };
     }
@@ -116,7 +119,7 @@ fn placed(
     }
     let back_m = (size_m[0] - other.size_m[0]) / 2.0;
     let (offset, turn, height) = match (part.side, part.over_m) {
-        (_, Some(over_m)) => ([back_m, 0.0], Turn::EAST, over_m),
+        (_, Some(over_m)) => ([back_m, part.slide_m], Turn::EAST, over_m),
         (None, None) => ([0.0, 0.0], Turn::EAST, 0.0),
         (Some(side), None) => {
             let (offset, turn) = beside(part, side, size_m, other.size_m);
@@ -147,23 +150,26 @@ fn beside(part: &Part, side: Side, size_m: [f32; 3], other_m: [f32; 3]) -> ([f32
     (offset, turn)
 }
 
-/// The height of what things are put on, m.
-pub fn top_m(catalog: &Catalog, class: ClassId) -> f32 {
+/// The height of one of the surfaces that things are put on, or of the highest one, m.
+fn top_m(catalog: &Catalog, class: ClassId, surface: Option<usize>) -> f32 {
     let class = catalog.class(class);
     let open = class.receptacle.as_ref().filter(|receptacle| !receptacle.enclosed);
-    let highest = open.and_then(|receptacle| receptacle.surfaces.last());
-    highest.map_or(class.size_m[2], |surface| surface.center_m[2])
+    let mut heights_m = open.into_iter().flat_map(|receptacle| &receptacle.surfaces).map(|surface| surface.center_m[2]);
+    let height_m = match surface {
+        Some(index) => heights_m.nth(index),
+        None => heights_m.max_by(f32::total_cmp),
+    };
+    height_m.unwrap_or(class.size_m[2])
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::furniture::table::FurnitureTable;
+    use crate::{furniture::table::FurnitureTable, kind::Kind};
 
-    #[test]
-    fn no_two_parts_of_a_set_are_in_one_place() {
-        let (catalog, table) = (Catalog::builtin(), FurnitureTable::builtin());
+    fn check_sets(kind: Kind) {
+        let (catalog, table) = (kind.catalog(), FurnitureTable::of(kind));
         let mut chance = Chance::new(1, 0);
         for set in &table.sets {
             for _ in 0..8 {
@@ -180,8 +186,35 @@ mod tests {
     }
 
     #[test]
+    fn no_two_parts_of_a_set_are_in_one_place() {
+        Kind::ALL.into_iter().for_each(check_sets);
+    }
+
+    #[test]
+    fn a_bed_along_a_wall_has_its_nightstand_at_its_head() {
+        let (catalog, table) = (Kind::Home.catalog(), FurnitureTable::of(Kind::Home));
+        let set = table.set("single bed along the wall");
+        let arrangement = Arrangement::draw(&set, &catalog, &mut Chance::new(1, 0)).unwrap();
+        let [bed, stand] = [0, 1].map(|index| &arrangement.pieces[index]);
+        assert!([Turn::NORTH, Turn::SOUTH].contains(&bed.turn) && stand.turn == Turn::EAST);
+        let [bed_block, stand_block] = [bed, stand].map(|piece| piece.block().unwrap());
+        assert!((bed_block.low[0] - stand_block.low[0]).abs() < 1e-3, "their backs are level");
+        let [_, head] = bed.turn.apply([-1.0, 0.0]);
+        assert!((stand.at_m[1] - bed.at_m[1]) * head > 1.0, "{:?}", stand.at_m);
+    }
+
+    #[test]
+    fn what_is_put_on_something_stands_on_its_highest_surface_or_another_one() {
+        let catalog = Kind::Home.catalog();
+        let top_of = |class: &str, surface| top_m(&catalog, catalog.find(class).unwrap(), surface);
+        assert_eq!((top_of("TV_Stand", None), top_of("TV_Stand", Some(1))), (0.5, 0.296));
+        assert_eq!(top_of("Nightstand", None), 0.55);
+        assert_eq!(top_of("Wardrobe", None), 2.0);
+    }
+
+    #[test]
     fn a_chair_faces_its_desk() {
-        let (catalog, table) = (Catalog::builtin(), FurnitureTable::builtin());
+        let (catalog, table) = (Kind::Office.catalog(), FurnitureTable::of(Kind::Office));
         let set = table.set("manager's desk");
         let arrangement = Arrangement::draw(&set, &catalog, &mut Chance::new(1, 0)).unwrap();
         let chair = &arrangement.pieces[1];

@@ -21,6 +21,8 @@ pub struct Site<'a> {
     pub catalog: &'a Catalog,
     pub rects: Vec<Rect>,
     pub walls: Vec<Wall>,
+    /// Where windows are: in which wall, and their middles along it, dm.
+    pub windows: Vec<(Wall, i32)>,
     /// What must stay free: before doors, in windows, before switches.
     pub kept_free: Vec<Block>,
     pub ground: Ground,
@@ -34,6 +36,7 @@ impl<'a> Site<'a> {
             catalog,
             rects: rects.to_vec(),
             walls: walls(rects),
+            windows: Vec::new(),
             kept_free,
             ground: Ground::new(rects, doors),
             placed: Vec::new(),
@@ -89,6 +92,11 @@ impl<'a> Site<'a> {
             && block.high[2] <= WALL_HEIGHT_M
             && !self.kept_free.iter().any(|free| free.overlaps(block))
             && !self.filled().any(|other| other.overlaps(&block.grown(APART_M)))
+    }
+
+    /// The first piece of one of these classes.
+    pub fn find(&self, classes: &[String]) -> Option<&Placed> {
+        self.placed.iter().find(|placed| classes.contains(&self.catalog.class(placed.class).id))
     }
 
     /// What all that is there fills.

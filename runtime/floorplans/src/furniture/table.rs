@@ -1,10 +1,22 @@
-//! The table of furniture: what belongs together, and what stands in which room. `data/furniture.toml` says what the fields mean.
+//! The table of furniture: what belongs together, and what stands in which room. `data/office/furniture.toml` says what the fields mean.
 
 use cohabit_cdf::RoomId;
 use serde::Deserialize;
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+use crate::kind::Kind;
+
+/// The files of each kind of building.
+const OFFICE: &[&str] = &[include_str!("../../data/office/furniture.toml")];
+const HOME: &[&str] = &[
+    include_str!("../../data/home/living.toml"),
+    include_str!("../../data/home/kitchen.toml"),
+    include_str!("../../data/home/bedrooms.toml"),
+    include_str!("../../data/home/bathrooms.toml"),
+    include_str!("../../data/home/workrooms.toml"),
+];
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct FurnitureTable {
     #[serde(rename = "set")]
     pub sets: Vec<Set>,
@@ -33,6 +45,7 @@ pub struct Part {
     pub faces: bool,
     pub over_m: Option<f32>,
     pub on: Option<usize>,
+    pub surface: Option<usize>,
     pub at_m: [f32; 2],
     /// Where a button is in front of the middle of the first part, left of it and above the floor.
     pub button_m: Option<[f32; 3]>,
@@ -75,6 +88,10 @@ pub struct Item {
     pub must: bool,
     #[serde(default)]
     pub height_m: f32,
+    #[serde(default)]
+    pub of: Vec<String>,
+    #[serde(default)]
+    pub unless: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Eq, PartialEq)]
@@ -84,15 +101,30 @@ pub enum Place {
     Wall,
     /// In a corner, its back to one of the walls.
     Corner,
+    /// The same, with the other wall at its left.
+    LeftCorner,
     /// Free-standing.
     Middle,
     /// On a wall.
     Hung,
+    /// On a wall, before a window.
+    Window,
+    /// Its back to the wall that another piece faces.
+    Opposite,
+    /// Below the middle of the ceiling.
+    Ceiling,
 }
 
 impl FurnitureTable {
-    pub fn builtin() -> Self {
-        toml::from_str(include_str!("../../data/furniture.toml")).expect("invariant: the table of furniture parses")
+    /// That of a kind of building.
+    pub fn of(kind: Kind) -> Self {
+        let files = if kind == Kind::Office { OFFICE } else { HOME };
+        files.iter().fold(Self::default(), |mut table, text| {
+            let file: Self = toml::from_str(text).expect("invariant: the table of furniture parses");
+            table.sets.extend(file.sets);
+            table.furnishings.extend(file.furnishings);
+            table
+        })
     }
 
     /// What stands in a room; nothing, if the table does not say.
@@ -111,13 +143,14 @@ impl FurnitureTable {
 
 #[cfg(test)]
 mod tests {
-    use cohabit_cdf::Catalog;
+    use std::collections::BTreeSet;
 
     use super::*;
 
-    #[test]
-    fn all_that_the_table_names_is_there() {
-        let (catalog, table) = (Catalog::builtin(), FurnitureTable::builtin());
+    fn check_names(kind: Kind) {
+        let (catalog, table) = (kind.catalog(), FurnitureTable::of(kind));
+        let names: BTreeSet<&str> = table.sets.iter().map(|set| set.name.as_str()).collect();
+        assert_eq!(names.len(), table.sets.len(), "two sets of {kind} have one name");
         let is_class = |name: &String| catalog.find(name).is_some();
         for set in &table.sets {
             for part in &set.parts {
@@ -134,6 +167,24 @@ mod tests {
             for name in named {
                 assert!(is_set(name) || is_class(name), "there is no `{name}`");
             }
+            for name in item.of.iter().chain(&item.unless) {
+                assert!(is_class(name), "there is no class `{name}`");
+            }
+            assert_eq!(item.place == Place::Opposite, !item.of.is_empty(), "{:?}", item.any);
+        }
+    }
+
+    #[test]
+    fn all_that_the_tables_name_is_there() {
+        Kind::ALL.into_iter().for_each(check_names);
+    }
+
+    #[test]
+    fn each_room_has_furniture() {
+        for kind in Kind::ALL {
+            let table = FurnitureTable::of(kind);
+            let rooms = kind.rooms().rooms.into_iter().map(|room| room.id).chain([RoomId::HALLWAY]);
+            rooms.for_each(|room| assert!(!table.of_room(room).is_empty(), "{kind}: {room}"));
         }
     }
 }
