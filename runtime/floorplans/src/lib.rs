@@ -8,6 +8,8 @@
 //!
 //! What rooms there are and what is in them stands in tables: `data/office.toml`, `data/home.toml`, `data/furniture.toml`, `data/things.toml`.
 //!
+//! What builds floor plans from something else than chance takes the same [`parts`].
+//!
 //! ```
 //! use cohabit_floorplans::{FloorPlans, Kind};
 //!
@@ -26,6 +28,7 @@ mod kind;
 mod openings;
 mod outline;
 pub mod pack;
+pub mod parts;
 mod places;
 mod plans;
 mod program;
