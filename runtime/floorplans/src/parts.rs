@@ -6,7 +6,7 @@ pub use crate::{
     draft::{CIRCUIT, Draft, Room},
     fixtures::{add_entry, add_fuse_box, add_switch, kept_free},
     furniture::{Arrangement, Placed, Site, WALL_HEIGHT_M, against},
-    geometry::{Block, HALF_WALL_M, Rect, Turn, Wall, metres, rounded, shared, walls},
+    geometry::{Block, HALF_WALL_M, Rect, Turn, Wall, is_clear, metres, rounded, shared, walls},
     openings::{Border, Entry, Floor, Gap, borders, outer},
     places::{Note, View, notes, views},
     text::text,

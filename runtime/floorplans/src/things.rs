@@ -17,6 +17,8 @@ const TURN_DEG: i32 = 12;
 const TURN_SINE: f32 = 0.208;
 /// Places that are tried for a thing.
 const TRIES: usize = 12;
+/// Kept free around what is put near a point, m.
+const SPARE_M: f32 = 0.002;
 /// As many that each has to fit on an anchor beside others.
 const SEVERAL: usize = 2;
 
@@ -214,7 +216,8 @@ impl Holder<'_> {
         let [depth, width, height] = self.catalog.class(class).size_m;
         let turn = (yaw_deg - self.placed.turn.yaw_deg()).to_radians();
         let [sin, cos] = [libm::sinf(turn).abs(), libm::cosf(turn).abs()];
-        let half = [depth * cos + width * sin, depth * sin + width * cos].map(|side| side / 2.0);
+        // A little more, so that rounding decides nothing where anchors are counted.
+        let half = [depth * cos + width * sin, depth * sin + width * cos].map(|side| side / 2.0 + SPARE_M);
         let fits = |surface: &&Surface| {
             height <= surface.clearance_m && (0..2).all(|axis| half[axis] * 2.0 <= surface.size_m[axis])
         };

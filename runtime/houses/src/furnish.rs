@@ -6,9 +6,10 @@ use cohabit_floorplans::parts::{Arrangement, Gap, Note, Places, Site, Thing, Tur
 use crate::{
     house::HouseObject,
     lattice::Lattice,
-    poses::{Stance, Wanted},
+    poses::{Pose, Stance, Wanted},
     report::{Reason, Tally},
     types::{ObjectType, TypeTable, classes},
+    walk::begins_on_its_floor,
 };
 
 /// What is so much nearer to its place than the next class is of the next class, m.
@@ -21,6 +22,8 @@ const LYING_M: f32 = 0.35;
 const REACH_M: f32 = 1.2;
 /// What is so far from its place counts as moved, m.
 const MOVED_M: f32 = 0.25;
+/// So many places that there is room at are tried: at each it is in the way.
+const TRIES: usize = 80;
 /// The lowest and the highest foot of what hangs, m.
 const HUNG_M: [f32; 2] = [0.2, 2.0];
 
@@ -52,6 +55,8 @@ pub struct Contents<'a> {
     items: Vec<Item<'a>>,
     /// What is on furniture, nobody says which.
     loose: Vec<Small<'a>>,
+    /// Whether all ways begin in this room.
+    is_start: bool,
     tally: Tally,
 }
 
@@ -157,6 +162,11 @@ fn yaw(yaw_deg: f64) -> f32 {
 }
 
 impl<'a> Contents<'a> {
+    /// Those of the room where all ways begin, or of another one.
+    pub fn of(is_start: bool) -> Self {
+        Self { is_start, ..Self::default() }
+    }
+
     /// Furnishes a bare room; nothing, if it has too little free floor or wall whatever stands in it.
     pub fn furnish<'c>(mut self, bare: &Site<'c>, door: Option<&Gap>, room: usize) -> Option<Furnished<'c>> {
         // What needs much room has the first choice.
@@ -179,7 +189,7 @@ impl<'a> Contents<'a> {
     fn stand<'c>(&self, bare: &Site<'c>, most: usize) -> (Site<'c>, Vec<Option<usize>>, Tally) {
         let (mut site, mut tally, mut holders) = (bare.clone(), self.tally.clone(), Vec::new());
         for (index, item) in self.items.iter().enumerate() {
-            let placed = if index < most { item.place(&mut site) } else { Err(Reason::InTheWay) };
+            let placed = if index < most { item.place(&mut site, self.is_start) } else { Err(Reason::InTheWay) };
             match placed {
                 Ok(is_moved) => {
                     tally.place(is_moved);
@@ -248,8 +258,8 @@ fn footprint_m2(catalog: &Catalog, class: ClassId) -> f32 {
 
 impl Item<'_> {
     /// Puts it at the nearest free place; says whether that is another one than in the house.
-    fn place(&self, site: &mut Site<'_>) -> Result<bool, Reason> {
-        let mut reason = Reason::NoSpace;
+    fn place(&self, site: &mut Site<'_>, is_start: bool) -> Result<bool, Reason> {
+        let mut in_the_way = 0;
         let mut tries = Vec::new();
         for (rank, class) in self.classes.iter().enumerate() {
             let arrangement = Arrangement::of(*class, site.catalog);
@@ -260,15 +270,16 @@ impl Item<'_> {
         tries.sort_by(|one, other| one.0.total_cmp(&other.0));
         for (_, pose, rank) in tries {
             let arrangement = Arrangement::of(self.classes[rank], site.catalog);
-            if site.try_place(&arrangement, pose.origin_m, pose.turn) {
+            if put(site, &arrangement, pose, is_start) {
                 let [x, y] = [0, 1].map(|axis| pose.origin_m[axis] - self.wanted.middle_m[axis]);
                 return Ok(pose.turn != self.wanted.turn || libm::hypotf(x, y) > MOVED_M);
             }
-            if reason == Reason::NoSpace && site.is_free_for(&arrangement, pose.origin_m, pose.turn) {
-                reason = Reason::InTheWay;
+            in_the_way += usize::from(site.is_free_for(&arrangement, pose.origin_m, pose.turn));
+            if in_the_way == TRIES {
+                break;
             }
         }
-        Err(reason)
+        Err(if in_the_way > 0 { Reason::InTheWay } else { Reason::NoSpace })
     }
 
     /// The height of its foot, m.
@@ -279,6 +290,19 @@ impl Item<'_> {
         let height_m = catalog.class(class).size_m[2];
         let [low, high] = HUNG_M;
         (self.middle_height_m - height_m / 2.0).clamp(low, high.min(WALL_HEIGHT_M - height_m).max(low))
+    }
+}
+
+/// Puts something down, unless it would be in the way.
+fn put(site: &mut Site<'_>, arrangement: &Arrangement, pose: Pose, is_start: bool) -> bool {
+    let before = is_start.then(|| site.clone());
+    let is_placed = site.try_place(arrangement, pose.origin_m, pose.turn);
+    match before {
+        Some(before) if is_placed && !begins_on_its_floor(site) => {
+            *site = before;
+            false
+        }
+        _ => is_placed,
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
     error::HouseError,
     furnish::{Contents, Furnished, Sorter},
     house::House,
-    names::RoomTable,
+    names::{NamedRoom, RoomTable},
     report::{Report, Tally},
     shell::{Shell, too_small},
     types::TypeTable,
@@ -109,7 +109,9 @@ impl<'a> Builder<'a> {
     fn draft(&self) -> Result<(Draft, Report), HouseError> {
         let sorter = Sorter { types: self.types, catalog: self.catalog, lattice: &self.shell.lattice };
         let mut tally = Tally::default();
-        let mut contents = vec![Contents::default(); self.shell.rooms.len()];
+        let start = self.ways_begin();
+        let mut contents: Vec<Contents<'_>> =
+            (0..self.shell.rooms.len()).map(|room| Contents::of(room == start)).collect();
         for object in &self.house.objects {
             match self.shell.room_at(sorter.point_m(object)) {
                 Some(room) => sorter.add(object, &mut contents[room]),
@@ -182,6 +184,15 @@ impl<'a> Builder<'a> {
             notes.push(format!("{id} has no light switch: no wall beside its doors has room for it"));
         }
         Ok(site)
+    }
+
+    /// The room where the check of floor plans begins its ways: the first corridor, or the first room.
+    fn ways_begin(&self) -> usize {
+        let is_corridor = |room: &NamedRoom| {
+            let declared = room.entry.as_ref().is_some_and(|entry| entry.corridor);
+            declared || self.catalog.rooms().is_corridor(room.id)
+        };
+        self.shell.rooms.iter().position(is_corridor).unwrap_or(0)
     }
 
     /// The room where one begins: that of the agent.

@@ -3,7 +3,7 @@
 //! [`Importer::plan`] reads the text of one house. Its rooms go to a lattice of 0.1 m (`lattice`) and become rectangles (`polygon`), with
 //! doors, passages and windows in their walls (`openings`); the bare floor is the `shell`. A table says which class of the pack `homes`
 //! stands for each type of object (`types`); nothing of AI2-THOR's assets is taken over. What stands on the floor goes to the nearest place
-//! where there is room for it and it is in nobody's way (`poses`, `furnish`), what lies on it to a free place there. The [`Report`] counts
+//! where there is room for it and it is in nobody's way (`poses`, `furnish`, `walk`), what lies on it to a free place there. The [`Report`] counts
 //! what is left out, by type and reason. A plan is handed out only if the check of floor plans finds nothing in it.
 //!
 //! The same house always makes the same plan. Text in, text out: this crate knows no files.
@@ -33,6 +33,7 @@ mod poses;
 mod report;
 mod shell;
 mod types;
+mod walk;
 
 /// The longest text of a house, bytes.
 pub const MOST_BYTES: usize = 8 * 1024 * 1024;

@@ -121,6 +121,8 @@ fn slabs(corners: &[[i32; 2]]) -> Vec<Rect> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     const L: [[i32; 2]; 6] = [[0, 0], [60, 0], [60, 30], [20, 30], [20, 50], [0, 50]];
@@ -155,5 +157,51 @@ mod tests {
         let mut backwards = L;
         backwards.reverse();
         assert_eq!(Outline::of(&backwards).unwrap().rects(Axis::X), Outline::of(&L).unwrap().rects(Axis::X));
+    }
+
+    /// Columns of floor side by side, each with some in common with the next: width, how far its south is from the one before, depth.
+    fn columns() -> impl Strategy<Value = Vec<[i32; 4]>> {
+        let column = (1..9, -6..=6, 1..12).prop_map(|(width, step, depth): (i32, i32, i32)| [width, step, depth]);
+        prop::collection::vec(column, 1..9).prop_map(|columns| {
+            let (mut west, mut before): (i32, Option<[i32; 2]>) = (-5, None);
+            let place = |[width, step, depth]: [i32; 3]| {
+                let south = before.map_or(step, |[south, north]| (south + step).clamp(south + 1 - depth, north - 1));
+                before = Some([south, south + depth]);
+                west += width;
+                [west - width, south, west, south + depth]
+            };
+            columns.into_iter().map(place).collect()
+        })
+    }
+
+    /// The corners round all columns.
+    fn around(columns: &[[i32; 4]]) -> Vec<[i32; 2]> {
+        let along_south = columns.iter().flat_map(|[west, south, east, _]| [[*west, *south], [*east, *south]]);
+        let along_north = columns.iter().rev().flat_map(|[west, _, east, north]| [[*east, *north], [*west, *north]]);
+        along_south.chain(along_north).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn rectangles_fill_an_outline_without_gap_or_overlap(columns in columns(), is_turned: bool, first in 0_usize..40) {
+            let turned = |[x, y]: [i32; 2]| if is_turned { [y, x] } else { [x, y] };
+            let mut corners: Vec<[i32; 2]> = around(&columns).into_iter().map(turned).collect();
+            let count = corners.len();
+            corners.rotate_left(first % count);
+            let outline = Outline::of(&corners).unwrap();
+            let is_floor = |x: i32, y: i32| {
+                let [x, y] = turned([x, y]);
+                columns.iter().any(|[west, south, east, north]| (*west..*east).contains(&x) && (*south..*north).contains(&y))
+            };
+            for axis in [Axis::X, Axis::Y] {
+                let rects = outline.rects(axis);
+                prop_assert!(rects.iter().all(|rect| rect.west < rect.east && rect.south < rect.north));
+                // Each square of the lattice is in one rectangle, or in none if it is no floor.
+                for (x, y) in (-80..80).flat_map(|x| (-80..80).map(move |y| (x, y))) {
+                    let has = |rect: &&Rect| (rect.west..rect.east).contains(&x) && (rect.south..rect.north).contains(&y);
+                    prop_assert_eq!(rects.iter().filter(has).count(), usize::from(is_floor(x, y)), "{} {}", x, y);
+                }
+            }
+        }
     }
 }

@@ -71,6 +71,11 @@ impl<'a> Site<'a> {
         self.ground.clone().try_add(&[], &[])
     }
 
+    /// The middles of all cells of its floor that can be walked on, m, row by row from the south.
+    pub fn walkable_m(&self) -> impl Iterator<Item = [f32; 2]> + '_ {
+        self.ground.walkable()
+    }
+
     /// The pieces of an arrangement in their places, if there is room for all of them.
     fn fitted(&self, arrangement: &Arrangement, origin_m: [f32; 3], turn: Turn) -> Option<Vec<Placed>> {
         let pieces = self.in_room(arrangement, origin_m, turn);
