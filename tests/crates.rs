@@ -20,6 +20,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-world", 1, &["rapier3d", "polyanya"]),
     ("cohabit-bus", 1, &["iceoryx2"]),
     ("cohabit-floorplans", 1, &[]),
+    ("cohabit-gltf", 1, &["gltf"]),
     ("cohabit-planner", 1, &[]),
     ("cohabit-rewriter", 1, &["safetensors"]),
     ("cohabit-render", 2, &[]),

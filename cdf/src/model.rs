@@ -1,9 +1,13 @@
 //! How an object looks, as data: a list of parts made from a small kit of shapes.
 //!
 //! A model is written in the object's own frame (see the crate's docs), in metres. The renderer turns it into a mesh
-//! once; nothing here knows about triangles.
+//! once; nothing here knows about triangles but those of meshes that are written out.
+
+mod mesh;
 
 use serde::{Deserialize, Serialize};
+
+pub use mesh::{FARTHEST_M, MOST_POINTS, MOST_TRIANGLES, MeshError, check_mesh};
 
 /// The looks of one class of object.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
@@ -136,6 +140,16 @@ pub enum Shape {
         /// Whether the last point joins the first.
         #[serde(default)]
         closed: bool,
+    },
+    /// Triangles as they are, such as those of an imported model: see [`check_mesh`] for what they may be.
+    Mesh {
+        /// `[x, y, z]` in the part's frame, m.
+        points: Vec<[f32; 3]>,
+        /// Three indices of `points` each, from 0, counter-clockwise seen from outside.
+        triangles: Vec<[u32; 3]>,
+        /// Where triangles meet at less than this angle, degrees, they look round; 40, if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        smooth_deg: Option<f32>,
     },
 }
 

@@ -247,7 +247,7 @@ impl View for SymbolicState {
                 && self.is_accessible(*id)
                 && !self.is(*id, StateFlag::Sparking)
         };
-        self.existing().filter(|id| self.class(*id).id == table.basin()).find(is_at_hand)
+        self.existing().filter(|id| table.is_basin(&self.class(*id).id)).find(is_at_hand)
     }
 
     fn within(&self, id: ObjectId, range: Range) -> bool {

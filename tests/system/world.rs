@@ -48,6 +48,68 @@ fn a_new_world_is_checked_played_and_replayed_with_its_pack_alone() {
     assert!(text.contains("`my-lab` 0.1.0 with hash"), "{text}");
 }
 
+/// A pyramid of four points: 10 cm wide, 20 cm high and 30 cm deep.
+const PYRAMID: &str = concat!(
+    r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"#,
+    r#""meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],"#,
+    r#""materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],"metallicFactor":0}}],"#,
+    r#""animations":[{"channels":[],"samplers":[]}],"#,
+    r#""accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},"#,
+    r#"{"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"}],"#,
+    r#""bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],"#,
+    r#""buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,"#,
+    "AAAAAAAAAAAAAAAAzczMPQAAAAAAAAAAAAAAAM3MTD4AAAAAAAAAAAAAAACamZk+AAIBAAEDAQIDAgAD",
+    r#""}]}"#
+);
+
+#[test]
+fn an_object_is_imported_from_a_gltf_file_once() {
+    let scratch = Scratch::new("import-model");
+    let into = scratch.path("packs");
+    std::fs::create_dir_all(&into).unwrap();
+    let (text, code) = told(&["new", "world", "my-lab", "--into", &into]);
+    assert_eq!(code, Some(0), "{text}");
+    let (pack, file) = (format!("{into}/my-lab"), scratch.path("pyramid.gltf"));
+    std::fs::write(&file, PYRAMID).unwrap();
+    let import = |rest: &[&str]| told(&[&["import-model", file.as_str(), "--into", pack.as_str()], rest].concat());
+
+    let (text, code) = import(&[
+        "--id",
+        "Pyramid_Lab",
+        "--name",
+        "Lab pyramid",
+        "--front",
+        "-x",
+        "--tint",
+        "--properties",
+        "PICKUPABLE",
+    ]);
+    assert_eq!(code, Some(0), "{text}");
+    for expected in
+        ["4 of 4 triangles", "called Lab pyramid, red", "1 × animation", "2 of 2 floor plans", "--only Pyramid_Lab"]
+    {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+    let objects = std::fs::read_to_string(format!("{pack}/objects/imported.toml")).unwrap();
+    assert!(objects.contains("size_m = [0.1, 0.3, 0.2]") && objects.contains("tint = \"#ff0000\""), "{objects}");
+    let (text, code) = told(&["catalog", "classes", "--json", "--world", &pack]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("\"id\": \"Pyramid_Lab\""), "{text}");
+
+    // What is there already stays as it is.
+    for (id, expected) in
+        [("Pyramid_Lab", "models/Pyramid_Lab.toml: exists already"), ("Bowl_01", "`Bowl_01` is defined twice")]
+    {
+        let (text, code) = import(&["--id", id]);
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains(expected), "{text}");
+    }
+    assert_eq!(std::fs::read_to_string(format!("{pack}/objects/imported.toml")).unwrap(), objects);
+    assert!(!Path::new(&format!("{pack}/models/Bowl_01.toml")).exists());
+    let (text, code) = import(&["--id", "Small_Lab", "--height-m", "0.05"]);
+    assert_eq!(code, Some(0), "{text}");
+}
+
 #[test]
 fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
     let scratch = Scratch::new("no-door");

@@ -6,7 +6,7 @@ use cohabit_cdf::{
     ClassId, Mission, ObjectClass, ObjectId, Property, StateFlag,
     catalog::{
         Stands,
-        table::{Change, Content, Need, Test, View as _, takes},
+        table::{Change, Need, View as _, takes},
     },
     goal::{InstancePattern, Predicate},
     symbolic::{Place, SymbolicState},
@@ -172,13 +172,7 @@ fn classes_spoken_of(state: &SymbolicState) -> BTreeSet<String> {
     }
     let mut patterns: Vec<String> = conditions
         .into_iter()
-        .filter_map(|condition| match condition.test {
-            Test::IsA(class)
-            | Test::HoldsA(class)
-            | Test::HoldsWhole(class)
-            | Test::Contains(Content::Class(class)) => Some(class.0),
-            _ => None,
-        })
+        .flat_map(|condition| condition.test.pattern().map(|classes| classes.0.clone()).unwrap_or_default())
         .collect();
     patterns.extend(table.cartridges().map(|(cartridge, _)| cartridge.to_owned()));
     let is_small = |class: &&ObjectClass| class.has(Property::Pickupable) && patterns.contains(&class.id);

@@ -110,8 +110,8 @@ impl Grounder<'_> {
     }
 
     fn basins(&self) -> Vec<Option<Index>> {
-        let basin = self.catalog.table().basin();
-        self.indices().filter(|thing| self.class(*thing).id == basin).map(Some).collect()
+        let table = self.catalog.table();
+        self.indices().filter(|thing| table.is_basin(&self.class(*thing).id)).map(Some).collect()
     }
 
     fn ground_one(&mut self, number: usize, earlier: &[&Rule], device: Option<&Device>, mut cast: Cast, hand: Hand) {

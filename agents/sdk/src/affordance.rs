@@ -93,8 +93,8 @@ impl View for Known<'_> {
     }
 
     fn basin(&self) -> Option<ObjectId> {
-        let basin = self.catalog.table().basin();
-        self.memory.things().map(|(id, _)| id).find(|id| self.class(*id).id == basin)
+        let table = self.catalog.table();
+        self.memory.things().map(|(id, _)| id).find(|id| table.is_basin(&self.class(*id).id))
     }
 }
 

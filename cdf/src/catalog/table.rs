@@ -23,7 +23,10 @@ pub use self::{
     listing::{ChangeForm, ConditionForm, Placeholder, change_forms, condition_forms, placeholders},
     view::{Judgement, Scope, View, takes},
 };
-use self::{condition::Test as T, file::Reader};
+use self::{
+    condition::{Kinds, Test as T},
+    file::Reader,
+};
 use crate::{action::Status, nearest::aside, state::StateFlag};
 
 /// Something that must hold, and what is answered where it does not.
@@ -226,6 +229,9 @@ pub enum TableError {
     },
 }
 
+/// The kind of what water runs in.
+const BASIN: &str = "basin";
+
 /// All rules, devices, works and recipes.
 #[derive(Clone, Debug)]
 pub struct ActionTable {
@@ -234,7 +240,7 @@ pub struct ActionTable {
     device_by_class: BTreeMap<String, usize>,
     works: Vec<Work>,
     plain: Device,
-    basin: String,
+    kinds: Kinds,
     power_work: Option<String>,
     slice: BTreeMap<String, String>,
     prints: BTreeMap<String, String>,
@@ -270,7 +276,7 @@ impl Default for ActionTable {
             device_by_class: BTreeMap::new(),
             works: Vec::new(),
             plain,
-            basin: String::new(),
+            kinds: Kinds::new(),
             power_work: None,
             slice: BTreeMap::new(),
             prints: BTreeMap::new(),
@@ -294,8 +300,12 @@ impl ActionTable {
         let times = times.unwrap_or(file::Times { work_s: 0.25, moment_s: 2.0 });
         (table.plain.work_s, table.plain.moment_s) = (times.work_s, times.moment_s);
         let works: BTreeSet<&str> = read.iter().flat_map(|(_, file)| file.work_names()).collect();
+        let mut kinds = Kinds::new();
+        for (kind, classes) in read.iter().flat_map(|(_, file)| &file.kinds) {
+            kinds.entry(kind.clone()).or_default().extend(classes.iter().cloned());
+        }
         for (file, read) in &read {
-            let part = Self::of_file(&Reader { file, times }, read, &mut errors);
+            let part = Self::of_file(&Reader { file, times, kinds: &kinds }, read, &mut errors);
             errors.extend(part.faults(file, is_class, &works));
             table.add(part);
         }
@@ -308,7 +318,7 @@ impl ActionTable {
             rules: reader.rules(read, errors),
             works: reader.works(read, errors),
             devices: reader.devices(read, errors),
-            basin: read.basin.clone().unwrap_or_default(),
+            kinds: read.kinds.clone(),
             power_work: read.power_work.clone(),
             slice: read.slice.clone(),
             prints: read.prints.clone(),
@@ -327,8 +337,8 @@ impl ActionTable {
             }
             self.devices.push(device);
         }
-        if !part.basin.is_empty() {
-            self.basin = part.basin;
+        for (kind, classes) in part.kinds {
+            self.kinds.entry(kind).or_default().extend(classes);
         }
         self.power_work = part.power_work.or(self.power_work.take());
         self.slice.extend(part.slice);
@@ -372,10 +382,10 @@ impl ActionTable {
         &self.works
     }
 
-    /// The class where water runs.
+    /// Whether water runs in things of a class: what the term `basin` means.
     #[must_use]
-    pub fn basin(&self) -> &str {
-        &self.basin
+    pub fn is_basin(&self, class: &str) -> bool {
+        self.kinds.get(BASIN).is_some_and(|basins| basins.iter().any(|basin| basin == class))
     }
 
     /// The name of the work that is done to each thing as power comes to it.
@@ -412,7 +422,7 @@ impl ActionTable {
         let conditions = |needs: &[Need], effects: &[Effect], when: &[Condition]| {
             let needs = needs.iter().flat_map(|need| need.any.clone());
             let effects = effects.iter().flat_map(|effect| effect.when.clone());
-            needs.chain(effects).chain(when.iter().cloned()).filter_map(class_of).collect::<Vec<_>>()
+            needs.chain(effects).chain(when.iter().cloned()).flat_map(classes_of).collect::<Vec<_>>()
         };
         let changes = |effects: &[Effect]| {
             let changes = effects.iter().flat_map(|effect| effect.changes.clone());
@@ -444,7 +454,7 @@ impl ActionTable {
         for recipe in [&self.slice, &self.prints, &self.yesterday] {
             all.extend(recipe.iter().flat_map(|(from, to)| [from.clone(), to.clone()]));
         }
-        all.extend((!self.basin.is_empty()).then(|| self.basin.clone()));
+        all.extend(self.kinds.values().flatten().cloned());
         all
     }
 
@@ -483,13 +493,7 @@ impl ActionTable {
     }
 }
 
-/// The class that a condition names.
-fn class_of(condition: Condition) -> Option<String> {
-    match condition.test {
-        T::IsA(ClassPattern(class))
-        | T::HoldsA(ClassPattern(class))
-        | T::HoldsWhole(ClassPattern(class))
-        | T::Contains(Content::Class(ClassPattern(class))) => Some(class),
-        _ => None,
-    }
+/// The classes that a condition names.
+fn classes_of(condition: Condition) -> Vec<String> {
+    condition.test.pattern().map(|classes| classes.0.clone()).unwrap_or_default()
 }

@@ -20,7 +20,6 @@ pub(super) struct Ids {
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct TableIds {
-    basin: Option<IgnoredAny>,
     power_work: Option<IgnoredAny>,
     times: Option<IgnoredAny>,
     rule: Vec<Named>,
@@ -116,7 +115,6 @@ impl Ids {
             // Why a file is not read is said where the table is read.
             let Ok(table) = limits::read::<TableIds>(file, text) else { continue };
             for (at, found, remedy) in [
-                ("basin", &table.basin, "leave it out"),
                 ("power_work", &table.power_work, "leave it out; a device has `work` and `shut_work`"),
                 ("times", &table.times, "leave it out; a device has `work_s` and `moment_s`"),
             ] {

@@ -7,6 +7,7 @@ use super::{PackError, PackFile};
 use crate::{
     catalog::{Catalog, ObjectClass, files},
     layout::Layout,
+    model::{Model, Part, Shape, check_mesh},
     nearest::did_you_mean,
 };
 
@@ -26,6 +27,8 @@ const HEAVIEST_KG: f32 = 5000.0;
 const MOST_ANCHORS: u32 = 32;
 /// The most shapes of a model, repeated ones counted each.
 const MOST_SHAPES: u32 = 4096;
+/// The most triangles of a model's meshes, repeated and mirrored ones counted each.
+const MOST_MESH_TRIANGLES: usize = 20_000;
 /// The most things that a floor plan places.
 const MOST_PLACEMENTS: usize = 2000;
 /// The longest side of a floor plan, m: the floor is kept as a grid.
@@ -140,8 +143,32 @@ pub(super) fn check_models(files: &[(String, String)]) -> Vec<PackError> {
             let remedy = format!("from 1 to {MOST_SHAPES}, repeated ones counted each");
             errors.push(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
         }
+        check_meshes(file, &model, &mut errors);
     }
     errors
+}
+
+/// Meshes have the points that their triangles name, and a model has as many triangles as can be drawn.
+fn check_meshes(file: &str, model: &Model, errors: &mut Vec<PackError>) {
+    let mut count = 0_usize;
+    for (number, part) in (1..).zip(&model.parts) {
+        let Shape::Mesh { points, triangles, smooth_deg } = &part.shape else { continue };
+        count = count.saturating_add(triangles.len().saturating_mul(copies(part)));
+        if let Err(error) = check_mesh(points, triangles, *smooth_deg) {
+            let at = format!("model `{}`: part {number}", model.id);
+            errors.push(PackError::at(file, &at, error.to_string(), &error.remedy()));
+        }
+    }
+    if count > MOST_MESH_TRIANGLES {
+        let at = format!("model `{}`: part", model.id);
+        let remedy = format!("at most {MOST_MESH_TRIANGLES}, repeated and mirrored ones counted each");
+        errors.push(PackError::at(file, &at, format!("{count} triangles of meshes"), &remedy));
+    }
+}
+
+fn copies(part: &Part) -> usize {
+    let repeated = part.repeat.map_or(1, |repeat| usize::try_from(repeat.count).unwrap_or(usize::MAX));
+    repeated.saturating_mul(if part.mirror.is_some() { 2 } else { 1 })
 }
 
 /// A floor plan has rooms, and is of a size that is walked in.

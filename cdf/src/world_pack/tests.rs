@@ -88,7 +88,25 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
     let huge = "room = [{ id = \"Hallway\", rects_m = [[0.0, 0.0, 5000.0, 2.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
     let itself = "base = \"Workshop\"\nplacement = [{ instance = \"Desk_01_1\", room = \"Workshop\", on = \"Degreaser_01_1\" }, { instance = \"Degreaser_01_1\", room = \"Workshop\", on = \"Desk_01_1\" }]";
     let alone = "base = \"Workshop\"\nroom = [{ id = \"Workshop\", rects_m = [[4.0, 0.0, 6.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }, { id = \"Lab1\", rects_m = [[0.0, 0.0, 4.0, 5.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]";
+    let mesh = |rest: &str| {
+        let points = "points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
+        format!("[[model]]\nid = \"M\"\n[[model.part]]\nshape = \"mesh\"\n{points}\n{rest}\n")
+    };
+    let fan = format!("triangles = [{}]\nmirror = \"x\"", "[0, 1, 2],".repeat(4000));
     let cases: &[(&str, String, &[&str])] = &[
+        (
+            "models/more.toml",
+            mesh("triangles = [[0, 1, 3]]"),
+            &["first/models/more.toml: model `M`: part 1: `triangles[0]` names point 3 of 3: ", "from 0"],
+        ),
+        ("models/more.toml", mesh("triangles = []"), &["`triangles` has 0 items: write from 1 to 4096"]),
+        ("models/more.toml", mesh("triangles = [[0, -1, 2]]"), &["first/models/more.toml: ", "-1"]),
+        ("models/more.toml", mesh("triangles = [[0, 1, 2]]\nsmooth_deg = 500"), &["`smooth_deg` is 500: ", "180"]),
+        (
+            "models/more.toml",
+            mesh(&format!("{fan}\nrepeat = {{ count = 3, step = [1, 0, 0] }}")),
+            &["model `M`: part: 24000 triangles of meshes: at most 20000"],
+        ),
         ("../world.toml", String::new(), &["first: ", "`../world.toml`", "within the pack"]),
         ("/etc/objects.toml", String::new(), &["within the pack"]),
         ("objects/..\\x.toml", String::new(), &["within the pack"]),

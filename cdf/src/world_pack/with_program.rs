@@ -19,7 +19,7 @@ pub fn builtin_files(name: &str) -> Option<Vec<PackFile>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Layout, Mission, WorldData, WorldPack};
+    use crate::{Layout, WorldData, WorldPack, mission::read_mission};
 
     #[test]
     fn each_pack_that_is_built_in_is_read_with_all_its_plans_and_missions() {
@@ -34,7 +34,9 @@ mod tests {
                 Layout::find(plan, world.catalog()).unwrap();
             }
             for (mission, text) in pack.missions() {
-                Mission::parse(text, world.catalog()).unwrap_or_else(|error| panic!("{mission}: {error}"));
+                if let Err(problems) = read_mission(mission, text, world.catalog()) {
+                    panic!("{mission}: {problems}");
+                }
             }
         }
     }

@@ -200,6 +200,7 @@ pub(crate) fn fitting_state(intent: Intent, object: &KnownObject) -> Option<bool
         Intent::TurnOff => Some(object.has(StateFlag::Toggled)),
         Intent::Repair => Some(object.has(StateFlag::Broken) || object.has(StateFlag::Eaten)),
         Intent::Break => Some(!object.has(StateFlag::Broken)),
+        Intent::Cut => Some(!object.has(StateFlag::Cut)),
         Intent::Clean => Some(object.has(StateFlag::Dirty)),
         Intent::Pour => Some(object.fluid != Fluid::None),
         Intent::Fill => Some(object.fluid == Fluid::None),

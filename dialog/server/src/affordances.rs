@@ -76,7 +76,7 @@ impl<'a> Seen<'a> {
     }
 
     fn is_tap(&self, id: ObjectId) -> bool {
-        self.class(id).id == self.catalog.table().basin()
+        self.catalog.table().is_basin(&self.class(id).id)
     }
 
     /// How far its outline, seen from above, is from a point on the floor, m.

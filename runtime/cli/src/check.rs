@@ -65,6 +65,11 @@ struct Verdict {
 }
 
 impl Check {
+    /// The check of all that is in world packs.
+    pub fn of_world(packs: WorldPacks) -> Self {
+        Self { files: Vec::new(), packs, json: false, schema: false, quiet: false }
+    }
+
     /// Checks all files; fails if any has an error.
     pub fn run(&self) -> anyhow::Result<()> {
         match self.report() {

@@ -99,7 +99,8 @@ impl Gallery {
         renderer: &mut dyn Renderer,
     ) -> anyhow::Result<()> {
         let layout = Arc::new(Layout::find(id, catalog)?);
-        let mission = Mission { layout: id.to_owned(), ..Mission::default() };
+        let start_room = layout.rooms.first().map_or(RoomId::BREAK_ROOM, |room| room.id);
+        let mission = Mission { layout: id.to_owned(), start_room, ..Mission::default() };
         let world = World::new(Arc::clone(catalog), Arc::clone(&layout), Arc::new(mission), 1)?;
         let mut scene = Scene::new(Arc::clone(meshes), &layout);
         scene.set_instances(&cohabit_engine::furnishings(&world).collect::<Vec<_>>());

@@ -18,6 +18,7 @@ mod gallery;
 mod generate;
 mod generate_world;
 mod guide;
+mod import_model;
 mod man;
 mod minds;
 mod mission_file;
@@ -88,6 +89,8 @@ enum Command {
     Generate(generate::Generate),
     /// Make furnished floor plans of offices or homes at random, as a world pack
     GenerateWorld(generate_world::GenerateWorld),
+    /// Import an object from a glTF file into a world pack
+    ImportModel(Box<import_model::ImportModel>),
     /// Have the expert play missions, and write a data set of what it does and what the robot sees
     Demonstrate(demonstrate::Demonstrate),
     /// Draw annotated views of the floor plans at random, and write them as a data set (COCO)
@@ -154,6 +157,7 @@ impl Command {
             | Self::Benchmark(_)
             | Self::Generate(_)
             | Self::GenerateWorld(_)
+            | Self::ImportModel(_)
             | Self::Demonstrate(_)
             | Self::Vision(_)
             | Self::Convert(_)
@@ -204,6 +208,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Benchmark(benchmark) => benchmark.run(),
         Command::Generate(generate) => generate.run(),
         Command::GenerateWorld(generate) => generate.run(),
+        Command::ImportModel(model) => model.run(),
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Vision(vision) => vision.run(),
         Command::Convert(convert) => convert.run(),

@@ -13,8 +13,8 @@ use crate::failure::bad_input;
 /// World packs beside what is built in.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct WorldPacks {
-    /// A folder with a world pack: floor plans, objects, devices and missions beside the built-in ones; as often as needed. A
-    /// later one may add to an earlier one
+    /// A folder with a world pack, or the name of one that comes with the program (homes): floor plans, objects, devices and missions
+    /// beside the built-in ones; as often as needed. A later one may add to an earlier one
     #[arg(long = "world", value_name = "FOLDER")]
     world_folders: Vec<PathBuf>,
     /// The hashes that these packs have, in their order
@@ -55,6 +55,13 @@ impl WorldPacks {
             }
         }
         WorldData::layered(packs).map_err(bad_input)
+    }
+
+    /// The same with one more, the last.
+    pub fn with(&self, folder: &Path) -> Self {
+        let mut packs = self.clone();
+        packs.world_folders.push(folder.to_owned());
+        packs
     }
 
     /// Whether there are none.

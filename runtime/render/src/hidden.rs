@@ -170,7 +170,8 @@ impl Body {
                 let outline: Vec<Vec2> = outline.iter().copied().map(Vec2::from_array).collect();
                 convex(outline).map(|outline| Self::Prism { outline, height: *height })
             }
-            Shape::Tube { .. } | Shape::Text { .. } | Shape::Line { .. } => None,
+            // A mesh need not be convex, nor closed.
+            Shape::Tube { .. } | Shape::Text { .. } | Shape::Line { .. } | Shape::Mesh { .. } => None,
         }
     }
 

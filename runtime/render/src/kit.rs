@@ -8,11 +8,12 @@ mod extrude;
 mod glyphs;
 mod lathe;
 mod line;
+mod mesh;
 mod path;
 mod text;
 mod tube;
 
-use cohabit_cdf::model::Shape;
+use cohabit_cdf::model::{MeshError, Shape, check_mesh};
 use glam::Vec3;
 
 /// How closely a mesh is looked at.
@@ -205,6 +206,13 @@ pub enum ShapeError {
     /// An outline crosses itself.
     #[error("`outline` crosses itself, or has no area")]
     Crossed,
+    /// Points and triangles are no mesh.
+    #[error("{error}; {}", .error.remedy())]
+    Mesh {
+        /// What is wrong.
+        #[from]
+        error: MeshError,
+    },
 }
 
 /// The surface of `shape` at this precision.
@@ -258,6 +266,10 @@ pub(crate) fn build(shape: &Shape, precision: &Precision) -> Result<Solid, Shape
             length("width", *width)?;
             points("path", path.len(), 2, path.as_flattened())?;
             Ok(line::build(path, *width, *closed, precision))
+        }
+        Shape::Mesh { points, triangles, smooth_deg } => {
+            check_mesh(points, triangles, *smooth_deg)?;
+            Ok(mesh::build(points, triangles, *smooth_deg, precision))
         }
     }
 }

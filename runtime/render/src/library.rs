@@ -300,6 +300,10 @@ mod tests {
             "shape = \"box\"\nsize = [1.0, 1.0, 1.0]\nrepeat = { count = 9999, step = [1.0, 0.0, 0.0] }",
             "9999 copies",
         );
+        check(
+            "shape = \"mesh\"\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ntriangles = [[0, 1, 7]]",
+            "model `m`, part 1: `triangles[0]` names point 7 of 3; points are counted from 0",
+        );
     }
 
     #[test]

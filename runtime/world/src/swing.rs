@@ -163,6 +163,9 @@ fn shape_bounds(shape: &Shape) -> (Vec3, Vec3) {
             let at = |point: &[f32; 2]| (Vec2::from(*point).extend(0.0), Vec2::from(*point).extend(*height));
             outline.iter().map(at).reduce(join).unwrap_or_default()
         }
+        Shape::Mesh { points, .. } => {
+            points.iter().map(|point| (Vec3::from(*point), Vec3::from(*point))).reduce(join).unwrap_or_default()
+        }
         // Letters are painted on something else.
         Shape::Text { .. } | Shape::Line { .. } => (Vec3::ZERO, Vec3::ZERO),
     }

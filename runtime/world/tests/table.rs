@@ -180,7 +180,7 @@ fn choose(state: &SymbolicState, chance: &mut Chance) -> Option<(ActionKind, Obj
     let near: Vec<ObjectId> = reachable.filter(|id| state.held != Some(*id)).collect();
     let all: Vec<ObjectId> = state.existing().collect();
     let of = |property: Property| near.iter().copied().filter(|id| state.class(*id).has(property)).collect::<Vec<_>>();
-    let basin = state.catalog.table().basin();
+    let is_basin = |id: &ObjectId| state.catalog.table().is_basin(&state.class(*id).id);
     let fitting: &[Kind] = if state.held.is_some() {
         &[Kind::Place, Kind::Pour, Kind::Fill, Kind::Clean, Kind::Break, Kind::Toggle]
     } else {
@@ -198,7 +198,7 @@ fn choose(state: &SymbolicState, chance: &mut Chance) -> Option<(ActionKind, Obj
         Kind::Toggle => of(Property::Toggleable),
         Kind::Break => [of(Property::Breakable), of(Property::Cuttable)].concat(),
         Kind::Pour => of(Property::Fillable),
-        Kind::Clean | Kind::Fill => near.iter().copied().filter(|id| state.class(*id).id == basin).collect(),
+        Kind::Clean | Kind::Fill => near.iter().copied().filter(is_basin).collect(),
         _ => near.clone(),
     };
     let id = match chance.below(20) {
@@ -241,7 +241,7 @@ fn next_goal(state: &SymbolicState, last: Option<ObjectId>, chance: &mut Chance)
         _ => {
             let fills = table.affords(ActionKind::Fill, state.class(id), Some(state.class(held)));
             fills
-                || state.class(id).id == table.basin()
+                || table.is_basin(&state.class(id).id)
                 || (has(held, Property::Fillable) && has(id, Property::Fillable))
         }
     });
@@ -259,7 +259,7 @@ fn purpose(state: &SymbolicState, goal: ObjectId) -> Vec<(ActionKind, ObjectId)>
     match state.held {
         None if has(Property::Pickupable) => steps.push((Kind::PickUp, goal)),
         None => {}
-        Some(held) if state.class(goal).id == state.catalog.table().basin() => {
+        Some(held) if state.catalog.table().is_basin(&state.class(goal).id) => {
             let running = state.is(goal, StateFlag::Toggled);
             steps.extend((!running).then_some((Kind::Toggle, goal)));
             steps.extend([

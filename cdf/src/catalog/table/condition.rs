@@ -1,6 +1,6 @@
 //! What must hold: one test of one thing, as the table writes it (`not it is Opened`).
 
-use std::{fmt, str::FromStr};
+use std::{collections::BTreeMap, fmt, str::FromStr};
 
 use serde::de::{IntoDeserializer as _, value::Error};
 
@@ -76,20 +76,23 @@ impl Range {
     }
 }
 
-/// A class of the catalogue, or all whose ids begin so: `Floppy_*`.
+/// Classes of the catalogue: one, all whose ids begin so (`Floppy_*`), or those of a kind (`basin`).
 #[derive(Clone, Debug, Eq, Hash, PartialEq)]
-pub struct ClassPattern(pub String);
+pub struct ClassPattern(pub Vec<String>);
 
 impl ClassPattern {
     /// Whether the class of that id is meant.
     #[must_use]
     pub fn matches(&self, class: &str) -> bool {
-        match self.0.strip_suffix('*') {
+        self.0.iter().any(|one| match one.strip_suffix('*') {
             Some(prefix) => class.starts_with(prefix),
-            None => self.0 == class,
-        }
+            None => one == class,
+        })
     }
 }
+
+/// Classes of which the table says the same, by the name of what they are.
+pub(super) type Kinds = BTreeMap<String, Vec<String>>;
 
 /// What may be in something.
 #[derive(Clone, Debug, Eq, Hash, PartialEq)]
@@ -190,6 +193,40 @@ pub struct Condition {
     pub test: Test,
 }
 
+impl Condition {
+    /// The same with the classes of a kind where it names one.
+    pub(super) fn of_kinds(mut self, kinds: &Kinds) -> Self {
+        if let Some(pattern) = self.test.pattern_mut() {
+            pattern.0 = pattern.0.iter().flat_map(|name| kinds.get(name).cloned().unwrap_or_else(|| vec![name.clone()])).collect();
+        }
+        self
+    }
+}
+
+impl Test {
+    /// The classes that it names.
+    #[must_use]
+    pub const fn pattern(&self) -> Option<&ClassPattern> {
+        match self {
+            Self::IsA(classes)
+            | Self::HoldsA(classes)
+            | Self::HoldsWhole(classes)
+            | Self::Contains(Content::Class(classes)) => Some(classes),
+            _ => None,
+        }
+    }
+
+    const fn pattern_mut(&mut self) -> Option<&mut ClassPattern> {
+        match self {
+            Self::IsA(classes)
+            | Self::HoldsA(classes)
+            | Self::HoldsWhole(classes)
+            | Self::Contains(Content::Class(classes)) => Some(classes),
+            _ => None,
+        }
+    }
+}
+
 impl FromStr for Condition {
     type Err = String;
 
@@ -233,7 +270,7 @@ pub(super) const TESTS: &[Form<Test>] = &[
     ("is FLAG", "This state of it is true.", |words| Some(Test::Is(read_word(words[0])?))),
     ("is a gate", "It is a portal.", |_| Some(Test::Gate)),
     ("is an open gate", "It is a portal that is open.", |_| Some(Test::OpenGate)),
-    ("is a CLASS", "It is of this class.", |words| Some(Test::IsA(pattern(words)))),
+    ("is a CLASS", "It is of this class, or of this kind.", |words| Some(Test::IsA(pattern(words)))),
     ("is held", "It is what is in the hand.", |_| Some(Test::Held)),
     ("is in held", "It is what is in the hand, or in or on that.", |_| Some(Test::InHeld)),
     ("is filled", "A fluid is in it.", |_| Some(Test::Filled)),
@@ -271,7 +308,7 @@ pub(super) const TESTS: &[Form<Test>] = &[
 
 /// The class in a form that names one.
 fn pattern(words: &[&str]) -> ClassPattern {
-    ClassPattern(words.concat())
+    ClassPattern(vec![words.concat()])
 }
 
 /// A value by its name in data files.
@@ -298,8 +335,8 @@ mod tests {
         };
         check("it is Opened", false, Term::It, Test::Is(StateFlag::Opened));
         check("not held affords FILLABLE", true, Term::Held, Test::Affords(Property::Fillable));
-        check("thing is a Floppy_*", false, Term::Thing, Test::IsA(ClassPattern("Floppy_*".to_owned())));
-        let disk = || ClassPattern("Floppy_Virus".to_owned());
+        check("thing is a Floppy_*", false, Term::Thing, Test::IsA(ClassPattern(vec!["Floppy_*".to_owned()])));
+        let disk = || ClassPattern(vec!["Floppy_Virus".to_owned()]);
         check("thing holds a whole Floppy_Virus", false, Term::Thing, Test::HoldsWhole(disk()));
         check("it contains Coffee", false, Term::It, Test::Contains(Content::Fluid(Fluid::Coffee)));
         check("never", false, Term::It, Test::Never);
@@ -317,7 +354,7 @@ mod tests {
         for (pattern, class, expected) in
             [("Hammer", "Hammer", true), ("Hammer", "Hammer_2", false), ("Floppy_*", "Floppy_Virus", true)]
         {
-            assert_eq!(ClassPattern(pattern.to_owned()).matches(class), expected, "{pattern} {class}");
+            assert_eq!(ClassPattern(vec![pattern.to_owned()]).matches(class), expected, "{pattern} {class}");
         }
     }
 }

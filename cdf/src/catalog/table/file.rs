@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::{
     ActionKind, Device, Need, Rule, Site, TableError, Work,
     change::{Change, Effect},
-    condition::Condition,
+    condition::{Condition, Kinds},
 };
 use crate::action::Status;
 
@@ -15,7 +15,8 @@ use crate::action::Status;
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TableFile {
-    pub basin: Option<String>,
+    #[serde(default)]
+    pub kinds: Kinds,
     pub power_work: Option<String>,
     #[serde(default)]
     shared: BTreeMap<String, Vec<RawNeed>>,
@@ -152,6 +153,8 @@ impl TableFile {
 pub(super) struct Reader<'a> {
     pub file: &'a str,
     pub times: Times,
+    /// The kinds of all files.
+    pub kinds: &'a Kinds,
 }
 
 /// The entries that can be read; what is wrong with the others goes to `errors`.
@@ -253,7 +256,11 @@ impl Reader<'_> {
     }
 
     fn conditions(&self, texts: &[String]) -> Result<Vec<Condition>, TableError> {
-        texts.iter().map(|text| text.parse().map_err(|reason| self.text(reason))).collect()
+        let one = |text: &String| match text.parse::<Condition>() {
+            Ok(condition) => Ok(condition.of_kinds(self.kinds)),
+            Err(reason) => Err(self.text(reason)),
+        };
+        texts.iter().map(one).collect()
     }
 
     fn change(&self, text: &str) -> Result<Change, TableError> {

@@ -94,7 +94,7 @@ pub fn placeholders() -> Vec<Placeholder> {
         place("FLUID", "A fluid", Fluid::ALL.iter().map(|fluid| fluid.name().to_owned()).collect()),
         place("COLOR", "A colour", Color::ALL.iter().map(|color| color.name().to_owned()).collect()),
         place("SOUND", "A sound", SoundKind::ALL.iter().map(|kind| format!("{kind:?}")).collect()),
-        place("CLASS", "A class; in conditions also all whose ids begin so, such as Floppy_*", Vec::new()),
+        place("CLASS", "A class; in conditions also all whose ids begin so, such as Floppy_*, or a kind, such as basin", Vec::new()),
         place("N", "The number of a slot", Vec::new()),
         place(
             "STATUS",

@@ -27,8 +27,8 @@ pub(crate) enum Claim<'q> {
     Done,
     /// It works something, or is needed for it.
     For,
-    /// It is what else is named: `the red thing the laser tip`.
-    Same(Box<Phrase>),
+    /// The first is what the second names: `the red thing the laser tip`.
+    Same(Box<Phrase>, Box<Phrase>),
     /// It is where the phrase says.
     Placed,
     /// It is there at all.
@@ -97,7 +97,10 @@ impl<'q> Claim<'q> {
         let mut reader = Reader::new(lexicon, words);
         // What stands for the subject elsewhere (`is it`, `the one for the laser`) has no words of its own to skip.
         let _ = reader.phrase_with_place();
-        let left = if reader.at == 0 { &[] } else { reader.rest() };
+        let left = if reader.at == 0 { &[] } else { said.without_fillers(reader.rest()) };
+        if let Some((subject, other)) = pointed_out(lexicon, words) {
+            return Self::Same(Box::new(subject), Box::new(other));
+        }
         if let [color] = left
             && lexicon.colors.exact(left).is_some()
         {
@@ -112,7 +115,7 @@ impl<'q> Claim<'q> {
             return Self::For;
         }
         if let Some(other) = named(lexicon, left) {
-            return Self::Same(Box::new(other));
+            return Self::Same(Box::new(phrase.clone()), Box::new(other));
         }
         let is_placed = phrase.relations.iter().any(|one| one.kind != RelationKind::Has) || phrase.room.is_some();
         match () {
@@ -129,11 +132,21 @@ pub(crate) fn can_be_told(lexicon: &Lexicon, question: &Question) -> bool {
     question.about.as_ref().is_some_and(is_told)
 }
 
+/// `that the blue one`: what was spoken of, and what it may be.
+fn pointed_out(lexicon: &Lexicon, words: &[String]) -> Option<(Phrase, Phrase)> {
+    let [subject, article, ..] = words else { return None };
+    let is_pointing =
+        lexicon.yes_no.things.contains(subject) && lexicon.articles.exact(std::slice::from_ref(article)).is_some();
+    let mut reader = Reader::new(lexicon, std::slice::from_ref(subject));
+    is_pointing.then(|| Some((reader.phrase()?, named(lexicon, &words[1..])?)))?
+}
+
 /// What words name, if they do nothing else.
 fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     let mut reader = Reader::new(lexicon, words);
     let phrase = reader.phrase_with_place()?;
-    let is_name = !phrase.namings.is_empty() || phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_bare_pronoun();
+    let is_told = phrase.color.is_some() && phrase.is_one_of_kind();
+    let is_name = is_told || !phrase.namings.is_empty() || phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_bare_pronoun();
     (is_name && lexicon.yes_no.is_filler(reader.rest())).then_some(phrase)
 }
 

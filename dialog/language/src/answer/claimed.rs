@@ -66,7 +66,7 @@ impl Answerer<'_> {
                 let text = format!("{start}: {}", prose::within_sentence(&self.facts().purpose(object)));
                 Understanding::whether(holds, text, vec![object.id])
             }),
-            Claim::Same(other) => self.is_same(phrase, &other),
+            Claim::Same(described, named) => self.is_same(&described, &named),
             Claim::Placed => self.with_object(&bare, |id| {
                 let holds = self.ground().narrow(phrase, &[id]) == [id];
                 self.told(holds, &self.place_sentence(id), id)

@@ -220,7 +220,7 @@ fn is_of(action: &Action, intent: Intent) -> bool {
     match intent {
         Intent::Open => *verb == Verb::Open,
         Intent::Close => *verb == Verb::Close,
-        Intent::Break => *verb == Verb::Break,
+        Intent::Break | Intent::Cut => *verb == Verb::Break,
         Intent::Scan => *verb == Verb::Scan,
         Intent::Pour => *verb == Verb::Pour,
         Intent::Throw => *verb == Verb::Throw,

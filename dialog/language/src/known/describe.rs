@@ -6,7 +6,7 @@ use cohabit_cdf::{
 };
 
 use crate::{
-    known::{Known, KnownObject},
+    known::{Known, KnownObject, floor::distance_m},
     read::phrase::Phrase,
 };
 
@@ -22,6 +22,10 @@ const TELLING: [(StateFlag, &str, &str); 6] = [
 
 /// States by which people see a difference before anybody says anything.
 const VISIBLE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Dirty, StateFlag::Embiggenated, StateFlag::Cereal];
+
+/// How large something is at least by which a place is told, and how near it is to that, m.
+const LANDMARK_M: f32 = 0.4;
+const NEAR_M: f32 = 2.5;
 
 /// The plain name of a class.
 pub(crate) fn name(catalog: &Catalog, class: ClassId) -> String {
@@ -85,12 +89,53 @@ pub(crate) fn location(catalog: &Catalog, scene: &Known, id: ObjectId) -> String
         let is_fixed = !catalog.class(object.class).has(Property::Pickupable) && parent.id != id;
         let is_part = catalog.class(parent.class).receptacle.as_ref().is_some_and(|place| !place.keys.is_empty());
         let preposition = if is_fixed && !is_part { "on" } else { inside(catalog, parent.class) };
-        parts.push(format!("{preposition} {}", short(catalog, scene, parent.id)));
+        parts.push(format!("{preposition} {}", told(catalog, scene, parent.id)));
     }
     if object.room != scene.robot.room {
         parts.push(format!("in the {}", object.room.name_in(catalog)));
     }
     parts.join(" ")
+}
+
+/// `the table next to the printer`, where several in its room are called alike; else `the table`.
+pub(crate) fn told(catalog: &Catalog, scene: &Known, id: ObjectId) -> String {
+    let the = short(catalog, scene, id);
+    let Some(object) = scene.object(id) else { return the };
+    match landmark(catalog, scene, object).filter(|_| !is_only_one(catalog, scene, object)) {
+        Some(landmark) => format!("{the} next to {}", short(catalog, scene, landmark)),
+        None => the,
+    }
+}
+
+/// Whether nothing else in its room is called as it is.
+fn is_only_one(catalog: &Catalog, scene: &Known, object: &KnownObject) -> bool {
+    let plain = &catalog.names(object.class).plain;
+    let is_other = |other: &&KnownObject| {
+        other.id != object.id && other.room == object.room && catalog.names(other.class).plain == *plain
+    };
+    let mut others = scene.objects.iter().filter(is_other).peekable();
+    others.peek().is_none() || {
+        let bare_name = bare(catalog, scene, object.id);
+        others.all(|other| bare(catalog, scene, other.id) != bare_name)
+    }
+}
+
+/// What stands nearest to a thing and is easy to see: large, fixed, and the only one called so in its room.
+fn landmark(catalog: &Catalog, scene: &Known, object: &KnownObject) -> Option<ObjectId> {
+    let distance = |other: &KnownObject| distance_m(object.position_m, other.position_m);
+    let is_seen = |other: &KnownObject| {
+        let class = catalog.class(other.class);
+        let is_fixed = ![Property::Pickupable, Property::Decor].into_iter().any(|property| class.has(property));
+        is_fixed && class.size_m.into_iter().fold(0.0, f32::max) >= LANDMARK_M
+    };
+    let mut near: Vec<&KnownObject> = scene
+        .objects
+        .iter()
+        .filter(|other| other.id != object.id && other.room == object.room && other.parent.is_none() && is_seen(other))
+        .filter(|other| distance(other) <= NEAR_M && catalog.names(other.class).plain != catalog.names(object.class).plain)
+        .collect();
+    near.sort_by(|one, other| distance(one).total_cmp(&distance(other)));
+    near.into_iter().find(|other| is_only_one(catalog, scene, other)).map(|other| other.id)
 }
 
 /// What it looks like, in a word or two: `broken red`.

@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use cohabit_cdf::{Action, Catalog, ObjectId, Property, StateFlag, Verb};
+use cohabit_cdf::{Action, Catalog, ObjectId, Property, StateFlag, Verb, table::Change};
 use serde::{Deserialize, Serialize};
 
 use crate::known::{
@@ -143,7 +143,13 @@ impl Memory {
             .collect();
         add_felt(world, &mut seen, put_away);
         add_parts(catalog, world, &mut seen);
-        self.things.values_mut().for_each(|thing| thing.visible = false);
+        for thing in self.things.values_mut() {
+            // What runs for a moment was seen running then.
+            let was_visible = std::mem::replace(&mut thing.visible, false);
+            if !was_visible && thing.has(StateFlag::Toggled) && runs_for_a_moment(catalog, thing) {
+                thing.flags.set(StateFlag::Toggled, false);
+            }
+        }
         for object in world.objects.iter().filter(|object| seen.contains(&object.id)) {
             self.learn(object, true);
         }
@@ -302,6 +308,14 @@ fn outwards(id: ObjectId, parent: impl Fn(ObjectId) -> Option<ObjectId>) -> Vec<
         next = parent(id);
     }
     all
+}
+
+/// Whether a machine is off again a moment after it was turned on, by itself or by what works it.
+fn runs_for_a_moment(catalog: &Catalog, thing: &KnownObject) -> bool {
+    let (table, class) = (catalog.table(), &catalog.class(thing.class).id);
+    let device = table.device(class);
+    let mut presses = device.worked_by.iter().map(|worker| table.device(worker)).chain([device]).map(|one| &one.press);
+    presses.any(|press| press.iter().flat_map(|effect| &effect.changes).any(|one| matches!(one, Change::Run(..))))
 }
 
 fn ancestors(world: &Known, id: ObjectId) -> Vec<ObjectId> {

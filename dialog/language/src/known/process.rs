@@ -56,6 +56,7 @@ pub(crate) struct Devices {
     is_lit: Vec<ClassId>,
     worked: Vec<(ClassId, Vec<ClassId>)>,
     pub(crate) hammers: Vec<ClassId>,
+    pub(crate) knives: Vec<ClassId>,
     /// What feeds and cuts circuits.
     pub(crate) levers: Vec<ClassId>,
     /// What machines turn other things into.
@@ -125,6 +126,7 @@ impl Devices {
                 .flat_map(|device| known(&device.classes).into_iter().map(|class| (class, known(&device.worked_by))))
                 .collect(),
             hammers: of_class(&|class, _| is_tool(table, &catalog.class(class).id, "break")),
+            knives: of_class(&|class, _| is_tool(table, &catalog.class(class).id, "cut without a knife")),
             levers: of_class(&|_, device| feeds(device)),
             made: made.collect(),
             uses: Uses::new(catalog),
@@ -201,8 +203,8 @@ impl WayEntry {
 
     /// What a rule does with what is held, at things of the class that it names.
     fn by_rule(&self, catalog: &Catalog, rule: &Rule) -> Option<Process> {
-        let place = rule.when.iter().find_map(|condition| match &condition.test {
-            Test::IsA(pattern) if condition.term == Term::It && !condition.negated => catalog.find(&pattern.0),
+        let places = rule.when.iter().find_map(|condition| match &condition.test {
+            Test::IsA(pattern) if condition.term == Term::It && !condition.negated => Some(of_ids(catalog, &pattern.0)),
             _ => None,
         })?;
         let act = match rule.action {
@@ -215,7 +217,7 @@ impl WayEntry {
         let runs = conditions().any(|one| one.term == Term::It && !one.negated && is_on(&one.test));
         let steps = [Act::Hold].into_iter().chain(runs.then_some(Act::Run)).chain([act]).collect();
         let fluid = changes(&rule.effects).find_map(fluid_of);
-        Some(self.process(vec![place], [Vec::new(), Vec::new()], steps, fluid, catalog))
+        Some(self.process(places, [Vec::new(), Vec::new()], steps, fluid, catalog))
     }
 
     fn by_devices(&self, catalog: &Catalog, doers: &[&Device]) -> Vec<Process> {

@@ -154,10 +154,11 @@ impl Planner<'_> {
         };
         let tool = self.find_one(phrase, &Want::place(Intent::Use, &[], None), Some(Role::Object(0)))?;
         let class = self.scene.object(tool).map(|known| known.class);
-        let is_hammer = class.is_some_and(|class| self.devices.hammers.contains(&class));
+        let is_one_of = |tools: &[ClassId]| class.is_some_and(|class| tools.contains(&class));
         let process = class.and_then(|class| self.devices.processes.iter().find(|process| process.is_done_at(class)));
         let intent = match process {
-            _ if is_hammer => Intent::Break,
+            _ if is_one_of(&self.devices.hammers) => Intent::Break,
+            _ if is_one_of(&self.devices.knives) => Intent::Cut,
             Some(process) => process.intent,
             // `use the antivirus disk on the computer`
             None => Intent::Place,
@@ -174,7 +175,7 @@ impl Planner<'_> {
             tool: Some((chosen(tool, phrase), Role::Object(0))),
             ..settled.clone()
         };
-        if is_hammer { self.add_break(&settled) } else { self.add_process(&settled) }
+        if matches!(intent, Intent::Break | Intent::Cut) { self.add_break(&settled) } else { self.add_process(&settled) }
     }
 
     /// Heating, cooling, cleaning and all else that takes several steps at a device.
@@ -393,6 +394,8 @@ impl Planner<'_> {
                 Act::Close => self.close_quietly(place),
                 Act::Start => self.start(process, place, color)?,
                 Act::Run => self.run_water(place),
+                // What lies before a ray, and was not put there for it, stays.
+                Act::Take if is_inside && !self.has(place, Property::Openable) => {}
                 Act::Take => self.take(object),
                 Act::Fill => self.interact(Verb::Fill, place, "filling it at"),
                 Act::Clean => self.interact(Verb::Clean, place, "washing it in"),

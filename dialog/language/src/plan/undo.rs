@@ -9,12 +9,23 @@ use crate::{
 };
 
 impl Planner<'_> {
-    /// Adds the reverse of `done`, its last step first.
+    /// Adds the reverse of `done`, its last step first. What cannot be undone is said, where anything can.
     pub(crate) fn undo(&mut self, done: &[Step]) -> Result<(), Fault> {
+        let mut faults = Vec::new();
         for step in done.iter().rev() {
-            self.undo_step(step)?;
+            match self.undo_step(step) {
+                Err(Fault::Cannot(text)) => faults.push((step, text)),
+                undone => undone?,
+            }
         }
-        Ok(())
+        match faults.into_iter().next() {
+            Some((_, text)) if self.steps.is_empty() => Err(Fault::Cannot(text)),
+            Some((step, _)) => {
+                self.notes.push(format!("I cannot undo {}", step.says));
+                Ok(())
+            }
+            None => Ok(()),
+        }
     }
 
     fn undo_step(&mut self, step: &Step) -> Result<(), Fault> {

@@ -67,7 +67,8 @@ impl<'a> Oracle<'a> {
         let largest = parts.iter().max_by(|one, other| bulk_m3(&one.shape).total_cmp(&bulk_m3(&other.shape)));
         let Some(part) = largest else { return format!("The {name} is {color}.") };
         let made = substance(part.material).map(|of| format!(" It is made of {of}.")).unwrap_or_default();
-        format!("The {name} is {} and {color}.{made}", form(&part.shape))
+        let form = form(&part.shape).map(|form| format!("{form} and ")).unwrap_or_default();
+        format!("The {name} is {form}{color}.{made}")
     }
 
     /// Which direction? `You should turn left.`
@@ -160,14 +161,20 @@ fn bulk_m3(shape: &Shape) -> f32 {
             let side = |axis: usize| span(&mut outline.iter().map(|point| point[axis]));
             side(0) * side(1) * height
         }
+        Shape::Mesh { points, .. } => {
+            let side = |axis: usize| span(&mut points.iter().map(|point| point[axis]));
+            side(0) * side(1) * side(2)
+        }
         Shape::Tube { .. } | Shape::Text { .. } | Shape::Line { .. } => 0.0,
     }
 }
 
-fn form(shape: &Shape) -> &'static str {
+/// The word for its form; none for a mesh, which may have any.
+fn form(shape: &Shape) -> Option<&'static str> {
     match shape {
-        Shape::Box { .. } => "rectangular",
-        _ => "round",
+        Shape::Box { .. } => Some("rectangular"),
+        Shape::Mesh { .. } => None,
+        _ => Some("round"),
     }
 }
 

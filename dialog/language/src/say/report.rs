@@ -68,6 +68,7 @@ fn interaction(
             Some(held) => format!("{the} is closed, and I have {}", describe::short(catalog, scene, held)),
             None => format!("{the} is closed"),
         },
+        Verb::Break if scene.object(object).is_some_and(|object| object.has(StateFlag::Cut)) => format!("{the} is cut"),
         Verb::Break => format!("{the} is broken"),
         Verb::Scan => format!("I have scanned {the}"),
         Verb::Pour => format!("I have poured it into {the}"),

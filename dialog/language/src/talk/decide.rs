@@ -124,7 +124,10 @@ impl Conversation<'_> {
             if more.contains('?') || more.starts_with("not ") {
                 return (understanding, probability);
             }
-            let left = format!("I am not sure about {more}: tell me if you want that, too.");
+            let left = match more.as_str() {
+                "" => "I am not sure what else you want: tell me, please.".to_owned(),
+                more => format!("I am not sure about {more}: tell me if you want that, too."),
+            };
             return (understanding.before(&left), probability);
         }
         // Of a word that nobody knows the robot asks, rather than to guess at what it may stand for.
@@ -274,15 +277,19 @@ fn settled(ways: &[Way]) -> Option<Way> {
     (plan.probability >= TO_GUESS && probability >= settled.least()).then_some(settled)
 }
 
-/// A plan that several ways begin with, together likely enough to be carried out, and what they may go on with.
+/// A plan that several ways begin with, together likely enough to be carried out, and what they go on with; no words, where each of
+/// them goes on otherwise.
 fn begun(ways: &[Way]) -> Option<(Way, String)> {
     ways.iter().find_map(|way| {
-        let (longer, more): (Vec<&Way>, Vec<String>) =
-            ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).unzip();
+        let longer: Vec<(&Way, String)> =
+            ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).collect();
         // Probabilities of ways are as their shares of what the rewriter writes.
-        let shares = longer.into_iter().chain([way]).map(|one| one.probability);
+        let shares = longer.iter().map(|(one, _)| *one).chain([way]).map(|one| one.probability);
         let begun = Way { probability: shares.sum(), ..way.clone() };
-        (begun.probability >= begun.least()).then_some((begun, more.into_iter().next()?))
+        let all: f32 = longer.iter().map(|(one, _)| one.probability).sum();
+        let (likeliest, more) = longer.into_iter().next()?;
+        let more = if likeliest.probability > all / 2.0 { more } else { String::new() };
+        (begun.probability >= begun.least()).then_some((begun, more))
     })
 }
 

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use crate::{
+    answer::claim::asked_state,
     context::Context,
     known::surroundings,
     read::{chatter, clause::Part, parts, segments},
@@ -15,7 +16,7 @@ use crate::{
         wording::Wording,
     },
     understanding::{Clarification, Understanding},
-    words::token,
+    words::{lexicon::StateWord, token},
 };
 
 /// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
@@ -95,6 +96,9 @@ impl Conversation<'_> {
             requests if token::words(requests) == token::words(wording.utterance) => {
                 self.understand_said(wording.utterance, &mut then)
             }
+            requests if let Some(named) = said_twice(requests) => {
+                self.requested(&format!("where is {named}?"), &mut then)?.without_yes().after("Yes.")
+            }
             requests => {
                 if let Some(rest) = requests.strip_prefix("stop; ") {
                     let stopped = self.stopped("", &mut then);
@@ -105,8 +109,22 @@ impl Conversation<'_> {
                 }
             }
         };
+        // `is it in one piece?`, told as whether it is broken: what is so is said, and no yes or no to another question.
+        let understanding =
+            if self.asks_other_state(text, wording) { understanding.without_yes() } else { understanding };
         then.reason = then.reason.replacen(reply::ASKED_TO, reply::UNDERSTOOD_TO, 1);
         Some(Way { understanding, probability, context: then })
+    }
+
+    /// Whether plain words ask for a state by a word whose meaning was not said.
+    fn asks_other_state(&self, text: &str, wording: &Wording<'_>) -> bool {
+        let (asked, _) = self.lexicon.normalise(text);
+        let Some((state, _)) = asked_state(self.lexicon, &asked).filter(|_| text.ends_with('?')) else { return false };
+        let is_said = |at: usize| {
+            let (_, said) = self.lexicon.states.longest(&wording.words[at..])?;
+            (*said == state).then_some(())
+        };
+        matches!(state, StateWord::Flag(..)) && (0..wording.words.len()).find_map(is_said).is_none()
     }
 
     /// What is said to who asks for nothing: thanks, praise and such have a reply.
@@ -134,6 +152,14 @@ impl Conversation<'_> {
         let all = format!("{around}\n{}", transcript(utterance, lines));
         WRITTEN.get_or_insert_with(&all, || rewrite(utterance, lines, around))
     }
+}
+
+/// What `is the time machine the time machine?` names: what was described is taken for what was named.
+fn said_twice(request: &str) -> Option<&str> {
+    let both = request.strip_prefix("is ")?.strip_suffix('?')?;
+    let (one, other) = both.split_at_checked(both.len() / 2)?;
+    let (one, other) = (one.trim(), other.trim());
+    (one == other && !one.is_empty()).then_some(one)
 }
 
 /// Plain requests without talk beside them.

@@ -170,6 +170,7 @@ fn state_after(clause: &Clause) -> Option<(StateFlag, bool, [&'static str; 2])> 
         Intent::TurnOn => (StateFlag::Toggled, true, ["on", "off"]),
         Intent::TurnOff => (StateFlag::Toggled, false, ["on", "off"]),
         Intent::Break => (StateFlag::Broken, true, ["broken", "whole"]),
+        Intent::Cut => (StateFlag::Cut, true, ["cut", "whole"]),
         Intent::Repair => (StateFlag::Broken, false, ["broken", "whole"]),
         Intent::Clean => (StateFlag::Dirty, false, ["dirty", "clean"]),
         Intent::Heat => (StateFlag::Hot, true, ["hot", "not hot"]),

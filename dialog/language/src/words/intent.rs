@@ -21,6 +21,7 @@ pub(crate) enum Intent {
     Open,
     Close,
     Break,
+    Cut,
     Scan,
     Pour,
     Toggle,
@@ -69,6 +70,7 @@ impl Intent {
             }
             Self::Open | Self::Close => &[Property::Openable],
             Self::Break => &[Property::Breakable],
+            Self::Cut => &[Property::Cuttable],
             Self::Toggle | Self::TurnOn | Self::TurnOff => &[Property::Toggleable],
             Self::Fill | Self::Pour | Self::Brew => &[Property::Fillable],
             _ => &[],
@@ -84,6 +86,7 @@ impl Intent {
                 | Self::Open
                 | Self::Close
                 | Self::Break
+                | Self::Cut
                 | Self::Scan
                 | Self::Toggle
                 | Self::TurnOn
@@ -129,6 +132,7 @@ impl Intent {
         matches!(
             self,
             Self::Break
+                | Self::Cut
                 | Self::Throw
                 | Self::Pour
                 | Self::Fill
@@ -162,6 +166,7 @@ impl Intent {
             Self::Open => "open",
             Self::Close => "close",
             Self::Break => "break",
+            Self::Cut => "cut",
             Self::Scan => "scan",
             Self::Pour => "pour",
             Self::Toggle => "switch",

@@ -114,6 +114,12 @@ impl YesNo {
         left.is_empty()
     }
 
+    /// Words without those at their end that add nothing.
+    pub(crate) fn without_fillers<'w>(&self, words: &'w [String]) -> &'w [String] {
+        let end = (0..words.len()).find(|at| self.is_filler(&words[*at..])).unwrap_or(words.len());
+        &words[..end]
+    }
+
     /// Whether words are of the floor.
     pub(crate) fn says_floor(&self, words: &[String]) -> bool {
         words.iter().any(|word| self.floor.contains(word))

@@ -78,6 +78,11 @@ fn shapes_are_closed() {
             height: 0.1,
             bevel: Some(0.02),
         },
+        Shape::Mesh {
+            points: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+            smooth_deg: None,
+        },
     ];
     for shape in &shapes {
         check_closed(shape);
@@ -93,6 +98,7 @@ fn bad_shapes_are_refused() {
         Shape::Extrude { outline: vec![[0.0, 0.0], [1.0, 0.0]], height: 0.1, bevel: None },
         Shape::Extrude { outline: vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], height: 0.1, bevel: None },
         Shape::Lathe { profile: vec![[0.1, f32::INFINITY], [0.1, 0.0]] },
+        Shape::Mesh { points: vec![[0.0; 3]; 3], triangles: vec![[0, 1, 3]], smooth_deg: None },
     ];
     for shape in &bad {
         assert!(build(shape, &fine()).is_err(), "{shape:?}");

@@ -7,7 +7,6 @@ use crate::{effect::Effect, power, rules::powered, state::ids};
 
 const LEVER: &str = "FuseBox_01_Lever";
 const CORDS: [&str; 2] = ["Broken_Cord_01", "CableFrayed_01"];
-const SINK: &str = "KitchenCounterSink_01";
 
 impl Builder<'_> {
     /// Feeds the circuits as fuse boxes, levers and generators are said to, and powers what hangs on them.
@@ -68,7 +67,7 @@ impl Builder<'_> {
         if CORDS.contains(&class.id.as_str()) && object.flags.has(StateFlag::Toggled) && fed {
             object.flags.set(StateFlag::Sparking, true);
         }
-        if class.id == SINK && object.flags.has(StateFlag::Toggled) {
+        if self.catalog.table().is_basin(&class.id) && object.flags.has(StateFlag::Toggled) {
             object.fluid = Fluid::Water;
         }
     }

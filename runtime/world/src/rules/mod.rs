@@ -196,8 +196,8 @@ impl<'a> Scene<'a> {
     /// A sink that the hand reaches.
     fn basin(&self) -> Option<ObjectId> {
         let sinks = self.facts.state.existing().map(|(id, _)| id);
-        let basin = self.facts.catalog.table().basin();
-        sinks.filter(|id| self.facts.class(*id).id == basin).find(|sink| self.touch(*sink).is_ok())
+        let table = self.facts.catalog.table();
+        sinks.filter(|id| table.is_basin(&self.facts.class(*id).id)).find(|sink| self.touch(*sink).is_ok())
     }
 
     /// What the body holds.
