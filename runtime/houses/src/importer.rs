@@ -119,12 +119,19 @@ impl<'a> Builder<'a> {
             }
         }
         let mut notes = self.shell.openings.notes.clone();
-        let sites = self.sites(&mut notes)?;
+        // Where there is a choice, the same house always makes the same plan.
+        let mut chance = Chance::new(0, 0);
+        let sites = self.sites(&mut notes, &mut chance)?;
         let mut rooms = Vec::new();
-        for (room, (contents, bare)) in contents.into_iter().zip(&sites).enumerate() {
+        for (room, (contents, (bare, has_switch))) in contents.into_iter().zip(&sites).enumerate() {
             let door = self.gaps().iter().find(|gap| gap.is_way() && gap.between.contains(&room));
             let small = || too_small(&self.house.rooms[room], bare);
-            let furnished = contents.furnish(bare, door, room).ok_or_else(small)?;
+            let mut furnished = contents.furnish(bare, door, room).ok_or_else(small)?;
+            // Where none of the walls beside doors has room for a light switch, it is where furniture leaves some.
+            if !has_switch && !add_switch(&mut furnished.site, room, &[], None, &mut chance) {
+                let id = self.shell.rooms[room].id;
+                notes.push(format!("{id} has no light switch: no wall has room for it"));
+            }
             tally.add(furnished.tally.clone());
             rooms.push(self.room(room, furnished));
         }
@@ -151,23 +158,21 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The rooms with what each has for certain: doors, light switches, and a fuse box for each circuit.
-    fn sites(&self, notes: &mut Vec<String>) -> Result<Vec<Site<'a>>, HouseError> {
-        // Where there is a choice, the same house always makes the same plan.
-        let mut chance = Chance::new(0, 0);
+    /// The rooms with what each has before furniture: doors, light switches (and whether it has one), a fuse box for each circuit.
+    fn sites(&self, notes: &mut Vec<String>, chance: &mut Chance) -> Result<Vec<(Site<'a>, bool)>, HouseError> {
         let mut sites = Vec::new();
         for room in 0..self.shell.rooms.len() {
-            sites.push(self.site(room, notes, &mut chance)?);
+            sites.push(self.site(room, notes, chance)?);
         }
         for (index, circuit) in sites.chunks_mut(CIRCUIT).enumerate() {
-            if !circuit.iter_mut().any(|site| add_fuse_box(site, &mut chance)) {
+            if !circuit.iter_mut().any(|(site, _)| add_fuse_box(site, chance)) {
                 notes.push(format!("circuit {} has no fuse box: no wall has room for it", index + 1));
             }
         }
         Ok(sites)
     }
 
-    fn site(&self, room: usize, notes: &mut Vec<String>, chance: &mut Chance) -> Result<Site<'a>, HouseError> {
+    fn site(&self, room: usize, notes: &mut Vec<String>, chance: &mut Chance) -> Result<(Site<'a>, bool), HouseError> {
         let own = self.gaps().iter().filter(|gap| gap.kind != OpeningKind::Window && gap.between.contains(&room));
         let doors: Vec<(Wall, i32)> = own.map(|gap| (gap.wall_of(room), gap.middle)).collect();
         let entry: Option<Entry> = self.shell.openings.entries.iter().copied().find(|entry| entry.room == room);
@@ -180,10 +185,8 @@ impl<'a> Builder<'a> {
         if entry.is_some_and(|entry| !add_entry(&mut site, ENTRANCE, entry, chance)) {
             notes.push(format!("{id} is without its door to the outside: there is no room for it"));
         }
-        if !add_switch(&mut site, room, self.gaps(), entry, chance) {
-            notes.push(format!("{id} has no light switch: no wall beside its doors has room for it"));
-        }
-        Ok(site)
+        let has_switch = add_switch(&mut site, room, self.gaps(), entry, chance);
+        Ok((site, has_switch))
     }
 
     /// The room where the check of floor plans begins its ways: the first corridor, or the first room.

@@ -119,6 +119,7 @@ fn what_has_no_class_is_named_with_its_count() {
     // All objects of the file are accounted for.
     assert_eq!(plan.report.placed + left_out, FLAT.matches("\"kinematic\"").count());
     assert!(plan.report.moved <= plan.report.placed);
+    assert_eq!(plan.report.notes, Vec::<String>::new());
     let text = serde_json::to_string(&plan.report).unwrap();
     assert!(text.contains("{\"type\":\"AlienProbe\",\"reason\":\"no_class\",\"count\":1}"), "{text}");
 }
