@@ -198,6 +198,52 @@ fn floor_plans_that_cannot_be_made_are_refused_with_what_would_be_right() {
     check(&["--kind", "home", "--name", "homes"], "the name of a world pack that comes with the program");
 }
 
+/// A house in the format of ProcTHOR.
+const HOUSE: &str = include_str!("../../runtime/houses/tests/data/flat.json");
+
+#[test]
+fn houses_of_procthor_are_a_world_pack_beside_homes() {
+    let scratch = Scratch::new("import-house");
+    let house: serde_json::Value = serde_json::from_str(HOUSE).unwrap();
+    let lines = scratch.write("houses.jsonl", &format!("{house}\n\n{{\"rooms\": 7}}\n{house}\n"));
+    let pack = scratch.path("thor");
+    let (text, code) = told(&["import-house", &lines, "--into", &pack, "--prefix", "Flat"]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("2 of 3 houses") && text.contains("houses.jsonl:3: /rooms: it is no list"), "{text}");
+    assert!(
+        text.contains("Flat0000: 4 rooms, 4 doors, 2 windows") && text.contains("left out: 1 AlienProbe"),
+        "{text}"
+    );
+    let (text, code) = told(&["check", "--world", "homes", "--world", &pack]);
+    assert_eq!(code, Some(0), "{text}");
+    let (text, _) = told(&["catalog", "--world", "homes", "--world", &pack]);
+    assert!(text.contains("Flat0000") && text.contains("Flat0002"), "{text}");
+
+    let file = scratch.write("house.json", HOUSE);
+    let (text, code) = told(&["import-house", &file, "--into", &scratch.path("one"), "--json"]);
+    assert_eq!(code, Some(0), "{text}");
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!((&report[0]["plan"], &report[0]["report"]["rooms"]), (&"Thor0000".into(), &4.into()), "{text}");
+}
+
+#[test]
+fn what_is_no_house_is_refused_and_leaves_no_folder() {
+    let scratch = Scratch::new("no-house");
+    let out = scratch.path("thor");
+    let check = |file: &str, more: &[&str], expected: &str| {
+        let (text, code) = told(&[&["import-house", file, "--into", &out], more].concat());
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains(expected) && !Path::new(&out).exists(), "{text}");
+    };
+    let house = scratch.write("house.json", HOUSE);
+    check(&house, &["--count", "0"], "from 1 to 990");
+    check(&house, &["--prefix", "a/b"], "cannot begin the ids of floor plans");
+    check(&house, &["--name", "My Houses"], "is no name of a world pack");
+    check(&scratch.path("none.json"), &[], "none.json");
+    check(&scratch.write("empty.jsonl", "\n\n"), &[], "there is no house in it");
+    check(&scratch.write("list.json", "[]"), &[], "list.json: the house: it is no object");
+}
+
 #[test]
 fn what_is_no_world_is_refused() {
     let scratch = Scratch::new("no-world");

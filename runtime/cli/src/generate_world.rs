@@ -1,20 +1,12 @@
 //! `cohabit generate-world`: floor plans made at random, as a world pack.
 
-use std::{
-    fs,
-    io::ErrorKind,
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{path::PathBuf, time::Instant};
 
 use cohabit_floorplans::{FloorPlan, FloorPlans, Kind, PlanError, pack};
 use cohabit_generate::side_by_side;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{
-    failure::{bad_input, environment},
-    terminal::shown,
-};
+use crate::{failure::bad_input, pack_folder, terminal::shown};
 
 /// Makes floor plans at random, furnished, and writes them as a world pack, which `play`, `check`, `generate`, `eval` and all other
 /// commands with `--world` take. Homes have rooms and classes of the world pack `homes`, which comes with the program: they take
@@ -47,26 +39,19 @@ pub struct GenerateWorld {
 impl GenerateWorld {
     /// Makes all of them, then writes the pack.
     pub fn run(&self) -> anyhow::Result<()> {
-        let name = self.pack_name();
+        let name = pack_folder::name(&self.out, self.name.as_deref());
         pack::check(&name, self.count).map_err(|error| self.refused(&error))?;
-        if self.out.exists() {
-            return Err(self.exists_already());
-        }
+        pack_folder::check_is_new(&self.out)?;
         let plans = FloorPlans::new(self.kind, self.rooms, self.seed).map_err(bad_input)?;
         let began = Instant::now();
         let made = self.make(&plans).map_err(bad_input)?;
-        self.write(&pack::files(&name, &plans, &made))?;
+        pack_folder::write(&self.out, &pack::files(&name, &plans, &made))?;
         let (seconds, folder) = (began.elapsed().as_secs_f64(), shown(self.out.display()));
         println!("{} floor plans in {seconds:.1} s: {folder}", made.len());
         let needed = self.kind.pack().map_or_else(String::new, |pack| format!("--world {pack} "));
         println!("Check them with: cohabit check {needed}--world {folder}");
         println!("Look around in the first: cohabit play look_around_{name} {needed}--world {folder}");
         Ok(())
-    }
-
-    fn pack_name(&self) -> String {
-        let folder = || self.out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        self.name.clone().unwrap_or_else(folder)
     }
 
     fn refused(&self, error: &PlanError) -> anyhow::Error {
@@ -77,10 +62,6 @@ impl GenerateWorld {
             }
             _ => bad_input(error),
         }
-    }
-
-    fn exists_already(&self) -> anyhow::Error {
-        bad_input(format!("{}: exists already: take another folder", self.out.display()))
     }
 
     fn make(&self, plans: &FloorPlans) -> Result<Vec<FloorPlan>, PlanError> {
@@ -97,25 +78,4 @@ impl GenerateWorld {
         bar.finish_and_clear();
         made
     }
-
-    fn write(&self, files: &[(String, String)]) -> anyhow::Result<()> {
-        fs::create_dir(&self.out).map_err(|error| match error.kind() {
-            ErrorKind::AlreadyExists => self.exists_already(),
-            ErrorKind::NotFound => {
-                bad_input(format!("{}: there is no folder to write it into: make that first", self.out.display()))
-            }
-            _ => failed(&self.out, &error),
-        })?;
-        for (path, text) in files {
-            let path = self.out.join(path);
-            let parent = path.parent().unwrap_or(&self.out);
-            fs::create_dir_all(parent).map_err(|error| failed(parent, &error))?;
-            fs::write(&path, text).map_err(|error| failed(&path, &error))?;
-        }
-        Ok(())
-    }
-}
-
-fn failed(path: &Path, error: &std::io::Error) -> anyhow::Error {
-    environment(format!("{}: {error}", path.display()))
 }

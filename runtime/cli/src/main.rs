@@ -18,12 +18,14 @@ mod gallery;
 mod generate;
 mod generate_world;
 mod guide;
+mod import_house;
 mod import_model;
 mod man;
 mod minds;
 mod mission_file;
 mod movement;
 mod new;
+mod pack_folder;
 mod page_language;
 mod pddl;
 mod pedestrians;
@@ -89,6 +91,8 @@ enum Command {
     Generate(generate::Generate),
     /// Make furnished floor plans of offices or homes at random, as a world pack
     GenerateWorld(generate_world::GenerateWorld),
+    /// Make floor plans of houses of ProcTHOR, as a world pack
+    ImportHouse(import_house::ImportHouse),
     /// Import an object from a glTF file into a world pack
     ImportModel(Box<import_model::ImportModel>),
     /// Have the expert play missions, and write a data set of what it does and what the robot sees
@@ -157,6 +161,7 @@ impl Command {
             | Self::Benchmark(_)
             | Self::Generate(_)
             | Self::GenerateWorld(_)
+            | Self::ImportHouse(_)
             | Self::ImportModel(_)
             | Self::Demonstrate(_)
             | Self::Vision(_)
@@ -208,6 +213,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Benchmark(benchmark) => benchmark.run(),
         Command::Generate(generate) => generate.run(),
         Command::GenerateWorld(generate) => generate.run(),
+        Command::ImportHouse(house) => house.run(),
         Command::ImportModel(model) => model.run(),
         Command::Demonstrate(demonstrate) => demonstrate.run(),
         Command::Vision(vision) => vision.run(),

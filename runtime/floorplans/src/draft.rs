@@ -23,11 +23,11 @@ const OUTLINES: usize = 400;
 /// Ways in which a room is furnished before the plan is given up.
 const FURNISHINGS: usize = 8;
 /// Rooms of a circuit.
-const CIRCUIT: usize = 5;
+pub const CIRCUIT: usize = 5;
 
 /// The tables that floor plans are drawn from.
 #[derive(Clone, Debug)]
-pub struct Tables {
+pub(crate) struct Tables {
     pub catalog: Arc<Catalog>,
     pub rooms: RoomTable,
     pub furniture: FurnitureTable,
@@ -37,22 +37,32 @@ pub struct Tables {
 /// A room with all that is in it.
 #[derive(Clone, Debug)]
 pub struct Room {
+    /// Which.
     pub id: RoomId,
+    /// Its floor.
     pub rects: Vec<Rect>,
-    /// Material and colour.
+    /// Material and colour of its floor.
     pub floor: (String, String),
+    /// Colour of its walls.
     pub wall: String,
+    /// The circuit that feeds it.
     pub circuit: u8,
+    /// What stands on its floor and hangs on its walls.
     pub furniture: Vec<Placed>,
+    /// What is on and in that.
     pub things: Vec<Thing>,
+    /// Where to stand and look from.
     pub views: Vec<View>,
+    /// Where notes can be stuck.
     pub notes: Vec<Note>,
 }
 
 /// A floor plan.
 #[derive(Clone, Debug)]
 pub struct Draft {
+    /// Its rooms.
     pub rooms: Vec<Room>,
+    /// The doors, passages and windows in their walls.
     pub gaps: Vec<Gap>,
 }
 
@@ -67,7 +77,7 @@ struct Shell<'a> {
 
 impl Draft {
     /// Draws a plan of so many rooms, without a hallway; nothing, if what was drawn does not go together.
-    pub fn draw(tables: &Tables, count: usize, chance: &mut Chance) -> Option<Self> {
+    pub(crate) fn draw(tables: &Tables, count: usize, chance: &mut Chance) -> Option<Self> {
         let wanted = program::draw(&tables.rooms.rooms, count, chance);
         let shell = Shell::draw(tables, &wanted, chance)?;
         let boxes = fuse_boxes(&shell, chance);

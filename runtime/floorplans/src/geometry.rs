@@ -20,13 +20,18 @@ pub fn rounded(m: f32) -> f32 {
 /// A rectangle of floor to the middle of its walls, dm.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Rect {
+    /// Its western side.
     pub west: i32,
+    /// Its southern side.
     pub south: i32,
+    /// Its eastern side.
     pub east: i32,
+    /// Its northern side.
     pub north: i32,
 }
 
 impl Rect {
+    /// Between its four sides.
     pub const fn new(west: i32, south: i32, east: i32, north: i32) -> Self {
         Self { west, south, east, north }
     }
@@ -90,17 +95,23 @@ pub fn bounds(rects: &[Rect]) -> Rect {
 pub struct Turn(u8);
 
 impl Turn {
+    /// Along x.
     pub const EAST: Self = Self(0);
+    /// Along y.
     pub const NORTH: Self = Self(1);
+    /// Against x.
     pub const WEST: Self = Self(2);
+    /// Against y.
     pub const SOUTH: Self = Self(3);
+    /// All four.
     pub const ALL: [Self; 4] = [Self::EAST, Self::NORTH, Self::WEST, Self::SOUTH];
 
-    /// The turn that is nearest to some degrees.
+    /// The turn of some degrees, a multiple of 90.
     pub fn of_degrees(degrees: i32) -> Self {
         Self((degrees.rem_euclid(360) / 90) as u8)
     }
 
+    /// As a yaw, degrees.
     pub const fn yaw_deg(self) -> f32 {
         match self.0 {
             0 => 0.0,
@@ -120,6 +131,7 @@ impl Turn {
         Self((4 - self.0) % 4)
     }
 
+    /// The opposite direction.
     pub const fn back(self) -> Self {
         self.then(Self::WEST)
     }
@@ -159,10 +171,12 @@ pub struct Wall {
 }
 
 impl Wall {
+    /// Along which it runs.
     pub const fn axis(self) -> Axis {
         self.faces.wall_axis()
     }
 
+    /// Its length, dm.
     pub const fn length(self) -> i32 {
         self.to - self.from
     }
@@ -224,7 +238,9 @@ pub fn outer_walls(own: &[Wall], others: &[Wall]) -> Vec<Wall> {
 /// A box along the axes: what a thing fills, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
+    /// Its lowest corner.
     pub low: [f32; 3],
+    /// Its highest corner.
     pub high: [f32; 3],
 }
 

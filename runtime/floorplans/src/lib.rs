@@ -9,6 +9,8 @@
 //! What rooms there are and what is in them stands in tables: in `data/office` and `data/home`. Offices have built-in classes alone; homes
 //! have those of the world pack that comes with the program as [`Kind::pack`] besides, so their plans are read with it.
 //!
+//! What builds floor plans from something else than chance takes the same [`parts`].
+//!
 //! ```
 //! use cohabit_floorplans::{FloorPlans, Kind};
 //!
@@ -27,6 +29,7 @@ mod kind;
 mod openings;
 mod outline;
 pub mod pack;
+pub mod parts;
 mod places;
 mod plans;
 mod program;

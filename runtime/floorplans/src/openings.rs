@@ -25,6 +25,7 @@ const WINDOWS: f64 = 0.75;
 /// What doors need to know of a room.
 #[derive(Clone, Debug)]
 pub struct Floor {
+    /// Its rectangles.
     pub rects: Vec<Rect>,
     /// Whether other rooms may be reached through it.
     pub through: bool,
@@ -35,6 +36,7 @@ pub struct Floor {
 /// A gap in a wall between two rooms, or to the outside.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap {
+    /// Door, passage or window.
     pub kind: OpeningKind,
     /// The rooms on both sides, the southern or western one first; a window has the same one twice.
     pub between: [usize; 2],
@@ -49,17 +51,23 @@ pub struct Gap {
 /// Where people come in: a place at an outer wall.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
+    /// The room, by its place in the list.
     pub room: usize,
+    /// The outer wall.
     pub wall: Wall,
+    /// Where along the wall its middle is, dm.
     pub middle: i32,
+    /// Its width, dm.
     pub width: i32,
 }
 
 /// A wall that two rooms share.
-#[derive(Clone, Copy)]
-struct Border {
-    between: [usize; 2],
-    wall: Wall,
+#[derive(Clone, Copy, Debug)]
+pub struct Border {
+    /// The rooms on both sides, the southern or western one first.
+    pub between: [usize; 2],
+    /// The wall, as the second room sees it.
+    pub wall: Wall,
 }
 
 impl Gap {
@@ -68,6 +76,7 @@ impl Gap {
         if room == self.between[1] { self.wall } else { Wall { faces: self.wall.faces.back(), ..self.wall } }
     }
 
+    /// Whether it is walked through.
     pub fn is_way(&self) -> bool {
         self.kind != OpeningKind::Window
     }
@@ -84,7 +93,7 @@ fn point(wall: Wall, along: i32) -> [i32; 2] {
 
 /// Joins all rooms by doors and passages, from the first one on: directly, or through rooms that may be walked through.
 pub fn join(floors: &[Floor], first: usize, chance: &mut Chance) -> Option<Vec<Gap>> {
-    let borders = borders(floors);
+    let borders = borders(floors, DOOR + 2 * END);
     let mut gaps: Vec<Gap> = Vec::new();
     let mut joined = vec![first];
     while joined.len() < floors.len() {
@@ -157,8 +166,8 @@ fn is_apart(one: &Gap, other: &Gap) -> bool {
     !is_of_both || is_opposite || (x - other_x).abs().max((y - other_y).abs()) >= reach
 }
 
-/// All walls that two rooms share, long enough for a door.
-fn borders(floors: &[Floor]) -> Vec<Border> {
+/// All walls that two rooms share, of `least` dm or more.
+pub fn borders(floors: &[Floor], least: i32) -> Vec<Border> {
     let mut all = Vec::new();
     for (first, one) in floors.iter().enumerate() {
         for (second, other) in floors.iter().enumerate().filter(|(second, _)| *second != first) {
@@ -166,9 +175,8 @@ fn borders(floors: &[Floor]) -> Vec<Border> {
                 walls(&other.rects).into_iter().filter_map(move |seen| Some((seen, shared(wall, seen)?)))
             });
             // Each is found from both sides, and kept as the northern or eastern room sees it.
-            let kept = pairs.filter(|(seen, (from, to))| {
-                [Turn::NORTH, Turn::EAST].contains(&seen.faces) && to - from >= DOOR + 2 * END
-            });
+            let kept = pairs
+                .filter(|(seen, (from, to))| [Turn::NORTH, Turn::EAST].contains(&seen.faces) && to - from >= least);
             all.extend(
                 kept.map(|(seen, (from, to))| Border { between: [first, second], wall: Wall { from, to, ..seen } }),
             );
@@ -198,7 +206,8 @@ pub fn entry(floors: &[Floor], gaps: &[Gap], room: usize, width: i32, chance: &m
     None
 }
 
-fn outer(floors: &[Floor], room: usize) -> Vec<Wall> {
+/// The walls of a room behind which no other one is.
+pub fn outer(floors: &[Floor], room: usize) -> Vec<Wall> {
     let others = floors.iter().enumerate().filter(|(index, _)| *index != room);
     let others: Vec<Wall> = others.flat_map(|(_, floor)| walls(&floor.rects)).collect();
     outer_walls(&walls(&floors[room].rects), &others)

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use cohabit_cdf::{
-    RoomEntry,
+    RoomEntry, RoomId,
     world_pack::{HEAD, builtin_names, is_name},
 };
 
@@ -34,7 +34,8 @@ pub fn check(name: &str, count: usize) -> Result<(), PlanError> {
 pub fn files(name: &str, plans: &FloorPlans, made: &[FloorPlan]) -> Vec<(String, String)> {
     let head = (HEAD.to_owned(), head(name, plans, made));
     let layouts = made.iter().map(|plan| (format!("layouts/{}.toml", plan.id), plan.text.clone()));
-    let mission = made.first().map(|plan| (format!("missions/look_around_{name}.json"), mission(plan)));
+    let first = made.first().and_then(|plan| Some((plan, *plan.rooms.first()?)));
+    let mission = first.map(|(plan, room)| look_around(name, &plan.id, room));
     std::iter::once(head).chain(layouts).chain(mission).collect()
 }
 
@@ -50,19 +51,30 @@ fn head(name: &str, plans: &FloorPlans, made: &[FloorPlan]) -> String {
     );
     let is_there = |entry: &RoomEntry| made.iter().any(|plan| plan.rooms.contains(&entry.id));
     for entry in plans.room_entries().filter(is_there) {
-        let words = entry.words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "\n[[room]]\nid = \"{}\"\nname = \"{}\"\nwords = [{words}]", entry.id, entry.name);
-        if let Some(color) = entry.color {
-            let _ = writeln!(text, "color = \"{color}\"");
-        }
+        text.push_str(&room(&entry));
     }
     text
 }
 
-/// A mission without goals in the first plan, so that there is something to play.
-fn mission(plan: &FloorPlan) -> String {
-    let room = plan.rooms.first().map_or_else(String::new, ToString::to_string);
-    format!(
+/// A room as the head of a pack declares it.
+#[must_use]
+pub fn room(entry: &RoomEntry) -> String {
+    let list = |words: &[String]| words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
+    let RoomEntry { id, name, words, kind, color, .. } = entry;
+    let mut text = format!("\n[[room]]\nid = \"{id}\"\nname = \"{name}\"\nwords = [{}]\n", list(words));
+    if !kind.is_empty() {
+        let _ = writeln!(text, "kind = [{}]", list(kind));
+    }
+    if let Some(color) = color {
+        let _ = writeln!(text, "color = \"{color}\"");
+    }
+    text
+}
+
+/// The file of a mission without goals that begins in a room of a plan, so that there is something to play.
+#[must_use]
+pub fn look_around(name: &str, plan: &str, room: RoomId) -> (String, String) {
+    let text = format!(
         r#"{{
   "task_description": "Walk around and look at what is there. There is nothing to do.",
   "goal_text": "Look around",
@@ -75,13 +87,13 @@ fn mission(plan: &FloorPlan) -> String {
     "required_objects": [],
     "sticky_notes": [],
     "blacklisted_layouts": null,
-    "layoutOverride": "{}",
+    "layoutOverride": "{plan}",
     "completelyRandomVisual": false
   }},
   "task_goals": [],
   "stateconditions": []
 }}
-"#,
-        plan.id
-    )
+"#
+    );
+    (format!("missions/look_around_{name}.json"), text)
 }

@@ -31,14 +31,18 @@ const NOTE_REACH_M: f32 = 0.9;
 /// A place to stand, and where to look from it.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
+    /// Where to stand, m.
     pub at_m: [f32; 2],
+    /// Where to look, degrees.
     pub yaw_deg: f32,
 }
 
 /// A place for a note.
 #[derive(Clone, Copy, Debug)]
 pub struct Note {
+    /// Its origin, m.
     pub at_m: [f32; 3],
+    /// The way that it faces, degrees.
     pub yaw_deg: f32,
 }
 

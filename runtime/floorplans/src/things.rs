@@ -28,6 +28,10 @@ const TURN_DEG: i32 = 12;
 const TURN_SINE: f32 = 0.208;
 /// Places that are tried for a thing.
 const TRIES: usize = 12;
+/// Kept free around what is put near a point, m.
+const SPARE_M: f32 = 0.002;
+/// As many that each has to fit on an anchor beside others.
+const SEVERAL: usize = 2;
 
 /// What is on and in furniture.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -74,6 +78,7 @@ const fn one() -> usize {
 /// A small thing on or in a piece of furniture.
 #[derive(Clone, Debug)]
 pub struct Thing {
+    /// What it is.
     pub class: ClassId,
     /// What it is on or in, by its place among the furniture of the room.
     pub holder: usize,
@@ -120,11 +125,8 @@ impl ThingTable {
             else {
                 continue;
             };
-            let covers: Vec<Cover> = furniture.iter().filter_map(|other| cover_of(other, index, placed)).collect();
-            let others = furniture.iter().enumerate().filter(|(other, _)| *other != index);
-            let around = others.filter_map(|(_, other)| other.filled(furniture)).collect();
-            let holder = Holder { index, placed, receptacle, around, catalog };
-            things.extend(holder.fill(entry, covers, chance));
+            let holder = Holder { index, placed, receptacle, around: around(furniture, index), catalog };
+            things.extend(holder.fill(entry, covers(furniture, index), chance));
         }
         things
     }
@@ -140,6 +142,7 @@ fn cover_of(piece: &Placed, holder: usize, placed: &Placed) -> Option<Cover> {
 }
 
 /// A piece of furniture that takes things.
+#[derive(Debug)]
 struct Holder<'a> {
     index: usize,
     placed: &'a Placed,
@@ -249,6 +252,27 @@ impl Holder<'_> {
         None
     }
 
+    /// The free place for a thing with a yaw in the world that is nearest to a point.
+    fn nearest(&self, class: ClassId, near_m: [f32; 3], yaw_deg: f32, covers: &[Cover]) -> Option<Cover> {
+        let [depth, width, height] = self.catalog.class(class).size_m;
+        let turn = (yaw_deg - self.placed.turn.yaw_deg()).to_radians();
+        let [sin, cos] = [libm::sinf(turn).abs(), libm::cosf(turn).abs()];
+        // A little more, so that rounding decides nothing where anchors are counted.
+        let half = [depth * cos + width * sin, depth * sin + width * cos].map(|side| side / 2.0 + SPARE_M);
+        let fits = |surface: &&Surface| {
+            height <= surface.clearance_m && (0..2).all(|axis| half[axis] * 2.0 <= surface.size_m[axis])
+        };
+        let mut surfaces: Vec<&Surface> = self.receptacle.surfaces.iter().filter(fits).collect();
+        let above = |surface: &Surface| (surface.center_m[2] - near_m[2]).abs();
+        surfaces.sort_by(|one, other| above(one).total_cmp(&above(other)));
+        let is_free = |cover: &Cover| {
+            !covers.iter().any(|other| cover.touches(other))
+                && !self.is_behind_something(*cover, height)
+                && !self.is_crowded(covers, *cover)
+        };
+        surfaces.into_iter().find_map(|surface| lattice(surface, half, near_m).into_iter().find(is_free))
+    }
+
     /// Whether what hangs above or stands beside the holder is where a thing of this height would be.
     fn is_behind_something(&self, cover: Cover, height_m: f32) -> bool {
         let [x, y, z] = self.placed.at_m;
@@ -271,6 +295,58 @@ impl Holder<'_> {
     }
 }
 
+/// The free places on and in a piece of furniture, which things are put into one by one: each near where it is wanted.
+#[derive(Debug)]
+pub struct Places<'a> {
+    holder: Holder<'a>,
+    covers: Vec<Cover>,
+    /// How many anchors are taken.
+    taken: usize,
+}
+
+impl<'a> Places<'a> {
+    /// Of one piece of the furniture of a room; nothing, if it takes no things.
+    pub fn of(furniture: &'a [Placed], index: usize, catalog: &'a Catalog) -> Option<Self> {
+        let placed = furniture.get(index)?;
+        let receptacle = catalog.class(placed.class).receptacle.as_ref()?;
+        let holder = Holder { index, placed, receptacle, around: around(furniture, index), catalog };
+        Some(Self { holder, covers: covers(furniture, index), taken: 0 })
+    }
+
+    /// Puts a thing at the free place that is nearest to a point in the frame of the furniture, turned as it is wanted (degrees, in the
+    /// world) or, where that does not fit, by a quarter; nothing, if no place is free.
+    pub fn put(&mut self, class: ClassId, near_m: [f32; 3], yaw_deg: f32) -> Option<Thing> {
+        let (id, receptacle) = (&self.holder.catalog.class(class).id, self.holder.receptacle);
+        let is_taken = receptacle.keys.is_empty() || receptacle.keys.contains(id);
+        if !is_taken || receptacle.refuses.contains(id) {
+            return None;
+        }
+        if self.holder.has_anchors_alone() {
+            let thing = self.holder.at_anchor(class, self.taken, SEVERAL)?;
+            self.taken += 1;
+            return Some(thing);
+        }
+        let own_deg = self.holder.placed.turn.yaw_deg();
+        let yaws = [yaw_deg, own_deg, own_deg + 90.0];
+        let found = |yaw_deg: f32| Some((self.holder.nearest(class, near_m, yaw_deg, &self.covers)?, yaw_deg));
+        let (cover, yaw_deg) = yaws.into_iter().find_map(found)?;
+        self.covers.push(cover);
+        let at_m = Some([cover.middle[0], cover.middle[1], cover.height_m]);
+        Some(Thing { class, holder: self.holder.index, at_m, yaw_deg: within_turn(yaw_deg) })
+    }
+}
+
+/// What stands on a piece of furniture covers of it.
+fn covers(furniture: &[Placed], index: usize) -> Vec<Cover> {
+    furniture.iter().filter_map(|other| cover_of(other, index, &furniture[index])).collect()
+}
+
+/// What all furniture but one piece fills.
+fn around(furniture: &[Placed], index: usize) -> Vec<Block> {
+    let others = furniture.iter().enumerate().filter(|(other, _)| *other != index);
+    others.filter_map(|(_, other)| other.filled(furniture)).collect()
+}
+
 /// Whether a thing fits on each anchor of a surface, turned by a quarter or not, beside its like.
 fn is_fit(kind: &ObjectClass, surface: &Surface, quarter: bool, is_alone: bool) -> bool {
     let [depth, width, height] = kind.size_m;
@@ -278,6 +354,27 @@ fn is_fit(kind: &ObjectClass, surface: &Surface, quarter: bool, is_alone: bool) 
     let places = if is_alone { [1, 1] } else { surface.anchors };
     let is_beside = (0..2).all(|axis| sides[axis] <= surface.size_m[axis] / places[axis] as f32 + ANCHOR_M / 2.0);
     height <= surface.clearance_m && is_beside
+}
+
+/// Places on a surface for what covers twice `half`, those near a point first.
+fn lattice(surface: &Surface, half: [f32; 2], near_m: [f32; 3]) -> Vec<Cover> {
+    /// Between two of them, m.
+    const STEP_M: f32 = 0.04;
+    let along = |axis: usize| {
+        let aside = surface.size_m[axis] / 2.0 - half[axis];
+        let count = (aside / STEP_M) as i32;
+        // To the centimetre, as things are put down by hand.
+        (-count..=count).map(move |step| ((surface.center_m[axis] + step as f32 * STEP_M) * 100.0).round() / 100.0)
+    };
+    let height_m = surface.center_m[2];
+    let all = along(0).flat_map(|x| along(1).map(move |y| Cover { middle: [x, y], half, height_m }));
+    let mut all: Vec<Cover> = all.collect();
+    let away = |cover: &Cover| {
+        let [x, y] = [0, 1].map(|axis| cover.middle[axis] - near_m[axis]);
+        x * x + y * y
+    };
+    all.sort_by(|one, other| away(one).total_cmp(&away(other)));
+    all
 }
 
 /// The anchors of a surface.

@@ -11,14 +11,17 @@ use crate::{
 /// Something in its place.
 #[derive(Clone, Debug)]
 pub struct Placed {
+    /// What it is.
     pub class: ClassId,
     /// The middle of its foot, m: told from the first part of its set, in the world once it is in a room, or in the frame of what it stands on.
     pub at_m: [f32; 3],
+    /// Where its front faces.
     pub turn: Turn,
     /// What it stands on, by its place in the list.
     pub on: Option<usize>,
     /// What its device works from or on.
     pub works: Option<usize>,
+    /// Its size: depth, width and height, m.
     pub size_m: [f32; 3],
 }
 
@@ -41,14 +44,22 @@ impl Placed {
 /// The pieces of a set that are there, in an order in which holders come first.
 #[derive(Clone, Debug)]
 pub struct Arrangement {
+    /// The pieces.
     pub pieces: Vec<Placed>,
     /// The rectangle around all that stands on no other piece.
     pub bounds: Block,
 }
 
 impl Arrangement {
+    /// One thing alone.
+    pub fn of(class: ClassId, catalog: &Catalog) -> Self {
+        let size_m = catalog.class(class).size_m;
+        let piece = Placed { class, at_m: [0.0; 3], turn: Turn::EAST, on: None, works: None, size_m };
+        Self { bounds: Block::of(size_m, piece.at_m, piece.turn), pieces: vec![piece] }
+    }
+
     /// Draws classes and parts of a set.
-    pub fn draw(set: &Set, catalog: &Catalog, chance: &mut Chance) -> Option<Self> {
+    pub(crate) fn draw(set: &Set, catalog: &Catalog, chance: &mut Chance) -> Option<Self> {
         let mut pieces: Vec<Placed> = Vec::new();
         // The piece of each part; none, if the part is left out.
         let mut piece_of: Vec<Option<usize>> = Vec::new();

@@ -18,14 +18,18 @@ const SLACK_M: f32 = 0.002;
 /// The room.
 #[derive(Clone, Debug)]
 pub struct Site<'a> {
+    /// All classes.
     pub catalog: &'a Catalog,
+    /// Its floor.
     pub rects: Vec<Rect>,
+    /// Its walls.
     pub walls: Vec<Wall>,
     /// Where windows are: in which wall, and their middles along it, dm.
     pub windows: Vec<(Wall, i32)>,
     /// What must stay free: before doors, in windows, before switches.
     pub kept_free: Vec<Block>,
-    pub ground: Ground,
+    pub(crate) ground: Ground,
+    /// What is in it.
     pub placed: Vec<Placed>,
 }
 
@@ -50,12 +54,7 @@ impl<'a> Site<'a> {
 
     /// Puts an arrangement down, if there is room for it and all stays in reach; says whether it did.
     pub fn try_place(&mut self, arrangement: &Arrangement, origin_m: [f32; 3], turn: Turn) -> bool {
-        let pieces = self.in_room(arrangement, origin_m, turn);
-        let all: Vec<Placed> = self.placed.iter().chain(&pieces).cloned().collect();
-        let filled = |piece: &Placed| piece.filled(&all);
-        if !pieces.iter().filter_map(filled).all(|block| self.has_room(&block)) {
-            return false;
-        }
+        let Some(pieces) = self.fitted(arrangement, origin_m, turn) else { return false };
         let blocks: Vec<Block> = pieces.iter().filter_map(Placed::block).collect();
         let usables: Vec<Usable> = pieces.iter().filter_map(|piece| self.usable(piece)).collect();
         if !self.ground.try_add(&blocks, &usables) {
@@ -63,6 +62,29 @@ impl<'a> Site<'a> {
         }
         self.placed.extend(pieces);
         true
+    }
+
+    /// Whether there is room for an arrangement, whatever is then out of reach.
+    pub fn is_free_for(&self, arrangement: &Arrangement, origin_m: [f32; 3], turn: Turn) -> bool {
+        self.fitted(arrangement, origin_m, turn).is_some()
+    }
+
+    /// Whether all doors, and all that is used, can be walked to.
+    pub fn is_walkable(&self) -> bool {
+        self.ground.clone().try_add(&[], &[])
+    }
+
+    /// The middles of all cells of its floor that can be walked on, m, row by row from the south.
+    pub fn walkable_m(&self) -> impl Iterator<Item = [f32; 2]> + '_ {
+        self.ground.walkable()
+    }
+
+    /// The pieces of an arrangement in their places, if there is room for all of them.
+    fn fitted(&self, arrangement: &Arrangement, origin_m: [f32; 3], turn: Turn) -> Option<Vec<Placed>> {
+        let pieces = self.in_room(arrangement, origin_m, turn);
+        let all: Vec<Placed> = self.placed.iter().chain(&pieces).cloned().collect();
+        let has_room = pieces.iter().filter_map(|piece| piece.filled(&all)).all(|block| self.has_room(&block));
+        has_room.then_some(pieces)
     }
 
     fn in_room(&self, arrangement: &Arrangement, [x, y, z]: [f32; 3], turn: Turn) -> Vec<Placed> {
