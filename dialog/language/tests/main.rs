@@ -9,6 +9,7 @@ mod commands;
 mod conversation;
 mod corpus;
 mod follow_up;
+mod homes;
 mod later;
 mod memory;
 mod missions;

@@ -249,11 +249,16 @@ impl Answerer<'_> {
         self.all_known(object, "I cannot tell")
     }
 
-    /// Whether a machine may have made it hot or cold since the robot saw it.
+    /// Whether it may be otherwise by now: hot or cold, or in a machine that has done its work, since the robot saw it.
     pub(crate) fn may_have_changed(&self, id: ObjectId, state: StateWord) -> bool {
         let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
+        let holder = self.scene.object(id).and_then(|object| self.scene.object(object.parent?));
+        let is_in_machine = holder.is_some_and(|holder| {
+            let device = self.catalog.table().device(&self.catalog.class(holder.class).id);
+            device.work.is_some() && matches!(state, StateWord::Flag(..))
+        });
         let is_seen = self.scene.robot.held == Some(id) || self.scene.object(id).is_some_and(|object| object.visible);
-        is_warmth && !is_seen
+        (is_warmth || is_in_machine) && !is_seen
     }
 }
 

@@ -120,11 +120,8 @@ impl Conversation<'_> {
             && let Some((begun, more)) = begun(&ways)
         {
             let (understanding, probability) = begun.taken(context);
-            // Nobody wants a question that they never asked, and what is not to be done is not done.
-            if more.contains('?') || more.starts_with("not ") {
-                return (understanding, probability);
-            }
             let left = match more.as_str() {
+                more if more.contains('?') || more.starts_with("not ") => return (understanding, probability),
                 "" => "I am not sure what else you want: tell me, please.".to_owned(),
                 more => format!("I am not sure about {more}: tell me if you want that, too."),
             };
@@ -287,7 +284,9 @@ fn begun(ways: &[Way]) -> Option<(Way, String)> {
         let begun = Way { probability: shares.sum(), ..way.clone() };
         let all: f32 = longer.iter().map(|(one, _)| one.probability).sum();
         let (likeliest, more) = longer.into_iter().next()?;
-        let more = if likeliest.probability > all / 2.0 { more } else { String::new() };
+        // Nobody wants a question that they never asked, and what is not to be done is not done.
+        let is_no_deed = more.contains('?') || more.starts_with("not ");
+        let more = if is_no_deed || likeliest.probability > all / 2.0 { more } else { String::new() };
         (begun.probability >= begun.least()).then_some((begun, more))
     })
 }

@@ -21,6 +21,8 @@ use crate::{
 
 /// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
 const DOUBTFUL: f32 = 0.4;
+/// How likely a rewriting is that names something of which nobody spoke, once that is what was named.
+const RENAMED: f32 = 0.5;
 /// What is said to talk of no known kind.
 const SEEN: &str = "I see. I am here when you need me.";
 const AGREED: &str = "OK.";
@@ -35,8 +37,9 @@ impl Conversation<'_> {
         let around = self.around();
         let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
         for (at, (text, probability)) in self.rewritings(wording.utterance, context, &around).iter().enumerate() {
-            let text = self.with_things_said(text, &source);
-            let text = &self.with_this_room(&self.without_invention(&text, &source), &source);
+            let kept = self.with_things_said(text, &source);
+            let probability = if kept == *text { *probability } else { probability * RENAMED };
+            let text = &self.with_this_room(&self.without_invention(&kept, &source), &source);
             let probability = probability * self.faithfulness(text, &source);
             let way = match self.of_rewriting(text, probability, wording, context) {
                 Some(way) => way,

@@ -138,7 +138,8 @@ impl Way {
             )
         };
         let is_sought = self.context.search.as_ref().is_none_or(|search| search.deeds().iter().all(is_asked));
-        is_sought && self.context.later.is_empty() && self.steps().is_some_and(|steps| steps.iter().all(looks))
+        let only_asks = self.context.later.iter().all(|text| text.ends_with('?'));
+        is_sought && only_asks && self.steps().is_some_and(|steps| steps.iter().all(looks))
     }
 
     /// Whether what it changes in the end is not simply put back.

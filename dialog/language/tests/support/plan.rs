@@ -1,17 +1,23 @@
-//! The built-in floor plans, with the whole catalogue's words: things are named by their class.
+//! The built-in floor plans and those of homes, with all words of their catalogues: things are named by their class.
 
 use std::sync::{Arc, OnceLock};
 
-use cohabit_cdf::{Catalog, Layout, ObjectId, RoomId};
+use cohabit_cdf::{Catalog, Layout, ObjectId, RoomId, WorldData, WorldPack, world_pack::builtin_files};
 use cohabit_language::{Known, KnownObject, KnownRobot, Language};
 
 /// `plan OfficeLayout2 Lab1; add Bowl_01 on TableRound_02; Bowl_01 broken`: that floor plan, all of which the robot knows,
 /// as it stands at the first viewpoint of that room; `None` where the marks are of no floor plan.
 pub fn talk(marks: &[&str]) -> Option<(&'static Language, Known)> {
-    static LANGUAGE: OnceLock<Language> = OnceLock::new();
+    static OFFICES: OnceLock<Language> = OnceLock::new();
+    static HOMES: OnceLock<Language> = OnceLock::new();
     let (plan, marks) = marks.split_first()?;
     let (layout, room) = plan.strip_prefix("plan ")?.split_once(' ')?;
-    let language = LANGUAGE.get_or_init(|| super::language(Arc::new(Catalog::builtin())));
+    let is_office = Layout::builtin_ids().iter().any(|id| id == layout);
+    let language = if is_office {
+        OFFICES.get_or_init(|| super::language(Arc::new(Catalog::builtin())))
+    } else {
+        HOMES.get_or_init(|| super::language(homes()))
+    };
     let mut known = furnished(language.catalog(), layout, RoomId::new(room).unwrap());
     for mark in marks {
         match mark.split(' ').collect::<Vec<_>>().as_slice() {
@@ -27,8 +33,13 @@ pub fn talk(marks: &[&str]) -> Option<(&'static Language, Known)> {
     Some((language, known))
 }
 
+fn homes() -> Arc<Catalog> {
+    let pack = WorldPack::parse("homes", builtin_files("homes").unwrap()).unwrap();
+    Arc::clone(WorldData::layered(vec![pack]).unwrap().catalog())
+}
+
 fn furnished(catalog: &Catalog, layout: &str, room: RoomId) -> Known {
-    let layout = Layout::builtin(layout).unwrap();
+    let layout = Layout::find(layout, catalog).unwrap();
     let mut objects = KnownObject::furniture(catalog, &layout);
     for object in &mut objects {
         object.instance.clone_from(&catalog.class(object.class).id);
