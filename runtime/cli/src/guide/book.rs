@@ -60,6 +60,7 @@ pub const PICTURES: &[(&str, &[u8])] = &[
     ("dialog/pictures/page.jpg", include_bytes!("../../../../dialog/pictures/page.jpg")),
     ("dialog/pictures/driving.jpg", include_bytes!("../../../../dialog/pictures/driving.jpg")),
     ("dialog/pictures/replay.jpg", include_bytes!("../../../../dialog/pictures/replay.jpg")),
+    ("runtime/render/pictures/home.jpg", include_bytes!("../../../render/pictures/home.jpg")),
     ("runtime/render/pictures/modalities.jpg", include_bytes!("../../../render/pictures/modalities.jpg")),
     ("runtime/render/pictures/objects.jpg", include_bytes!("../../../render/pictures/objects.jpg")),
     ("runtime/render/pictures/people.jpg", include_bytes!("../../../render/pictures/people.jpg")),
