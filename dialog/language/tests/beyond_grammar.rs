@@ -75,12 +75,13 @@ fn how_sure_it_is_is_told_apart() {
 #[test]
 fn a_thing_that_nobody_spoke_of_is_the_one_that_was_named() {
     fn rewrites(said: &str, _: &[(bool, String)], _: &str) -> Vec<(String, f32)> {
-        let text = if said.contains("trophy") { "put the pie on the counter top" } else { "is the coffee hot?" };
+        let text = if said.contains("trophy") { "put the carrot on the counter top" } else { "is the coffee hot?" };
         vec![(text.to_owned(), 0.95)]
     }
     let mut talk = Talk::new(&[]);
     talk.language = Box::leak(Box::new(talk.language.clone().with_rewriter(rewrites)));
-    let found = talk.say("right then, the trophy: be a dear and have it over on that counter of ours for me");
+    let found =
+        talk.say("would you be a dear and have that trophy over on the counter of ours for me, there is a good lad");
     assert_eq!(found, "take Trophy01_1, put KitchenCounterTop_02_1");
     talk.say_and_do("pick up the bowl");
     let found = talk.say("there we are now, would you say that it has got itself good and warm by this time?");

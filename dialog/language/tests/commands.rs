@@ -276,7 +276,7 @@ fn processes() {
         use the time machine on the bowl -> take Bowl_01_1, open YesterdayMachine_01_1, put YesterdayMachine_01_1, close YesterdayMachine_01_1, toggle YesterdayMachine_01_1, open YesterdayMachine_01_1, take Bowl_01_1
         use the sink to clean the plate -> take FoodPlate_01_1, toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1
         heat the table -> ! I cannot heat the round table…
-        cut the banana -> ! I cannot cut things…",
+        cut the banana -> ! I cannot cut the banana…",
     );
     check(
         &["held CoffeeMug_Boss_1", "CoffeeMug_Boss_1 coffee", "KitchenCounterSink_01_1 on"],

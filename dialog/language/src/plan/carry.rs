@@ -390,6 +390,9 @@ impl Planner<'_> {
             _ => self.tool(tools),
         };
         for object in objects {
+            if settled.intent == Intent::Cut && !self.has(object, Property::Cuttable) {
+                return Err(Fault::Cannot(format!("I cannot cut {}.", self.the(object))));
+            }
             if let Some(tool) = tool.filter(|tool| *tool != object) {
                 self.hold(tool)?;
             }

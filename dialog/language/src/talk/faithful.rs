@@ -21,6 +21,8 @@ const HERE: [&str; 3] = ["in this room", "in here", "around here"];
 const ALL: [&str; 3] = ["all", "every", "everything"];
 /// What is said of the one of two that was not spoken of.
 const OTHER: &str = "other";
+/// How what is around the robot says what is in a thing: `mug with coffee`.
+const HOLDING: &str = "with";
 /// Within so many words after `if` its `not` is said.
 const CLAUSE: usize = 6;
 
@@ -33,8 +35,6 @@ pub(crate) struct Source {
     pairs: BTreeSet<[String; 2]>,
     /// The same of what is around the robot.
     pairs_around: BTreeSet<[String; 2]>,
-    /// The words of what is around the robot.
-    around: BTreeSet<String>,
     /// Whether a condition was denied: `if it is not`.
     is_denied: bool,
     /// Whether anything was.
@@ -64,7 +64,6 @@ impl Source {
             things,
             pairs: before.iter().flat_map(|line| pairs(line)).collect(),
             pairs_around: pairs(&around_words).collect(),
-            around: around_words.into_iter().collect(),
             said: said.iter().cloned().collect(),
             is_denied: denies_condition(lexicon, said),
             only_asks: only_asks(lexicon, said),
@@ -134,7 +133,8 @@ impl Conversation<'_> {
         let words: Vec<String> = request.split(' ').map(str::to_owned).collect();
         let is_unheard = |word: &String| {
             let is_fluid = self.lexicon.fluids.exact(std::slice::from_ref(word)).is_some();
-            is_fluid && !source.words.contains(word) && !source.around.contains(word)
+            let is_around = source.pairs_around.contains(&[HOLDING.to_owned(), word.clone()]);
+            is_fluid && !source.words.contains(word) && !is_around
         };
         // `is it hot?`, taken for the coffee that it mostly is of.
         if let Some(at) = words.windows(2).position(|pair| pair[0] == "the" && is_unheard(&pair[1])) {

@@ -123,7 +123,11 @@ impl Conversation<'_> {
     /// Whether plain words ask for a state by a word whose meaning was not said.
     fn asks_other_state(&self, text: &str, wording: &Wording<'_>) -> bool {
         let (asked, _) = self.lexicon.normalise(text);
-        let Some((state, _)) = asked_state(self.lexicon, &asked).filter(|_| text.ends_with('?')) else { return false };
+        let is_one = text.ends_with('?') && !text.contains(';');
+        let Some((state, words)) = asked_state(self.lexicon, &asked).filter(|_| is_one) else { return false };
+        if words.iter().all(|word| wording.words.contains(word)) {
+            return false;
+        }
         let is_said = |at: usize| {
             let (_, said) = self.lexicon.states.longest(&wording.words[at..])?;
             (*said == state).then_some(())

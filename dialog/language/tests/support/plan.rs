@@ -48,7 +48,11 @@ fn furnished(catalog: &Catalog, layout: &str, room: RoomId) -> Known {
     let viewpoint = layout.viewpoints.iter().find(|viewpoint| viewpoint.room == room).unwrap();
     let [x, y] = viewpoint.at_m;
     let robot = KnownRobot { position_m: [x, y, 0.0], yaw_rad: 0.0, room, held: None };
-    Known::new(robot, objects)
+    let mut known = Known::new(robot, objects);
+    if !Layout::builtin_ids().contains(&layout.id) {
+        known.rooms = layout.rooms.iter().map(|room| room.id).collect();
+    }
+    known
 }
 
 /// Puts a thing of the mission on or in the nearest of `parent`.
