@@ -137,7 +137,9 @@ impl Conversation<'_> {
             is_fluid && !source.words.contains(word) && !is_around
         };
         // `is it hot?`, taken for the coffee that it mostly is of.
-        if let Some(at) = words.windows(2).position(|pair| pair[0] == "the" && is_unheard(&pair[1])) {
+        if request.ends_with('?')
+            && let Some(at) = words.windows(2).position(|pair| pair[0] == "the" && is_unheard(&pair[1]))
+        {
             return [&words[..at], &["it".to_owned()], &words[at + 2..]].concat().join(" ");
         }
         let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
