@@ -408,6 +408,11 @@ impl Catalog {
         &self.classes
     }
 
+    /// The ids of all classes, in their order.
+    pub fn class_ids(&self) -> impl Iterator<Item = ClassId> + use<> {
+        (0..self.classes.len()).map(|index| ClassId(index as u16))
+    }
+
     /// The class at `id`.
     ///
     /// # Panics

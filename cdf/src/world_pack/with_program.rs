@@ -1,6 +1,6 @@
 //! World packs that come with the program, by name.
 
-use super::PackFile;
+use super::{PackFile, WorldPack};
 use crate::builtin::PACKS;
 
 /// The names of the packs that are built in.
@@ -16,6 +16,14 @@ pub fn builtin_files(name: &str) -> Option<Vec<PackFile>> {
     Some(files.iter().map(file).collect())
 }
 
+impl WorldPack {
+    /// The pack that is built in by this name.
+    #[must_use]
+    pub fn builtin(name: &str) -> Option<Self> {
+        Some(Self::parse(name, builtin_files(name)?).expect("invariant: a pack that comes with the program is sound"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -25,7 +33,7 @@ mod tests {
     fn each_pack_that_is_built_in_is_read_with_all_its_plans_and_missions() {
         assert!(names().count() > 0);
         for name in names() {
-            let pack = WorldPack::parse(name, builtin_files(name).unwrap()).unwrap();
+            let pack = WorldPack::builtin(name).unwrap();
             assert_eq!(pack.id().name, name);
             let world = WorldData::layered(vec![pack]).unwrap();
             let pack = &world.packs()[0];

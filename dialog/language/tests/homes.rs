@@ -1,5 +1,5 @@
 //! What people say at home, to a robot that knows the classes and rooms of the world pack `homes`.
-use crate::support::Talk;
+use crate::support::{Talk, means};
 
 const KITCHEN: &[&str] = &[
     "plan House_Family Kitchen",
@@ -8,13 +8,6 @@ const KITCHEN: &[&str] = &[
     "add Dinner_Plate on Kitchen_Island",
     "Dinner_Plate dirty",
 ];
-
-#[track_caller]
-fn means(marks: &[&str], said: &[&str], wanted: &str) {
-    let mut talk = Talk::new(marks);
-    let found = said.iter().map(|said| talk.say_and_do(said)).last().unwrap();
-    assert_eq!(found, wanted, "{said:?}");
-}
 
 #[test]
 fn any_knife_cuts_and_any_basin_washes() {

@@ -1,5 +1,5 @@
 //! What people say in long messages, understood with the rewriter.
-use crate::support::{Talk, text};
+use crate::support::{Talk, means, text};
 use cohabit_language::Understanding;
 use proptest::prelude::*;
 
@@ -9,13 +9,6 @@ const BREAK_ROOM: &[&str] = &[
     "CoffeeMug_Boss coffee",
     "add Donut_01 on TableRound_02",
 ];
-
-#[track_caller]
-fn means(marks: &[&str], said: &[&str], wanted: &str) {
-    let mut talk = Talk::new(marks);
-    let found = said.iter().map(|said| talk.say_and_do(said)).last().unwrap();
-    assert_eq!(found, wanted, "{said:?}");
-}
 
 #[test]
 fn remarks_and_reasons_are_passed_over() {

@@ -8,7 +8,7 @@ use std::{
 };
 
 use anyhow::Context as _;
-use cohabit_cdf::{Catalog, ClassId, Layout, Mission, RoomId};
+use cohabit_cdf::{Catalog, Layout, Mission, RoomId};
 use cohabit_render::{
     Camera, Lens, MeshLibrary, Planes, Renderer, Scene,
     gallery::{self, Picture, Sheet},
@@ -81,9 +81,7 @@ impl Gallery {
                 )));
             }
         }
-        let classes = (0..catalog.classes().len())
-            .map(|index| ClassId(index as u16))
-            .filter(|class| self.wants(&catalog.class(*class).id));
+        let classes = catalog.class_ids().filter(|class| self.wants(&catalog.class(*class).id));
         Ok(gallery::sheets_of(meshes, catalog, classes).collect())
     }
 

@@ -11,12 +11,7 @@ use cohabit_engine::world_folder_files;
 use cohabit_gltf::{DENSITY_KG_M3, Front, Imported, Options, Size, USUAL_TRIANGLES, Up, import, read_document, text};
 use cohabit_render::MeshLibrary;
 
-use crate::{
-    check::Check,
-    failure::{bad_input, environment},
-    terminal::shown,
-    world::WorldPacks,
-};
+use crate::{check::Check, failure::bad_input, pack_folder::failed, terminal::shown, world::WorldPacks};
 
 /// The file of a pack that imported classes are added to.
 const OBJECTS: &str = "objects/imported.toml";
@@ -232,10 +227,6 @@ impl ImportModel {
             println!("Not imported: {}", shown(what));
         }
     }
-}
-
-fn failed(path: &Path, error: &std::io::Error) -> anyhow::Error {
-    environment(format!("{}: {error}", path.display()))
 }
 
 #[cfg(test)]

@@ -41,6 +41,7 @@ pub fn write(folder: &Path, files: &[(String, String)]) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn failed(path: &Path, error: &Error) -> anyhow::Error {
+/// A file or folder that could not be made.
+pub fn failed(path: &Path, error: &Error) -> anyhow::Error {
     environment(format!("{}: {error}", path.display()))
 }

@@ -7,7 +7,6 @@ use cohabit_cdf::{
     Catalog, Layout, PackFile, RoomId, WorldData, WorldPack,
     layout::{OpeningKind, Placement},
     mission,
-    world_pack::builtin_files,
 };
 use cohabit_floorplans::{FloorPlan, FloorPlans, Kind, PlanError, pack};
 
@@ -22,7 +21,7 @@ fn plans(kind: Kind, rooms: usize, seed: u64) -> FloorPlans {
 
 /// The world of plans of a kind: what is built in, and the pack that they need.
 fn base(kind: Kind) -> Vec<WorldPack> {
-    kind.pack().map(|name| WorldPack::parse(name, builtin_files(name).unwrap()).unwrap()).into_iter().collect()
+    kind.pack().map(|name| WorldPack::builtin(name).unwrap()).into_iter().collect()
 }
 
 fn layout(plan: &FloorPlan) -> Layout {

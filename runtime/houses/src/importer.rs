@@ -1,6 +1,6 @@
 //! A house becomes a floor plan, which is checked as every floor plan is.
 
-use cohabit_cdf::{Catalog, Layout, RoomEntry, RoomId, WorldData, WorldPack, layout::OpeningKind, world_pack};
+use cohabit_cdf::{Catalog, Layout, RoomEntry, RoomId, WorldData, WorldPack, layout::OpeningKind};
 use cohabit_floorplans::parts::{
     CIRCUIT, Chance, Draft, Entry, Gap, Room, Site, Wall, add_entry, add_fuse_box, add_switch, kept_free, text,
 };
@@ -45,8 +45,7 @@ pub struct Importer {
 
 /// The world of the pack `homes`.
 pub fn homes() -> WorldData {
-    let files = world_pack::builtin_files(HOMES).expect("invariant: the pack is built in");
-    let pack = WorldPack::parse(HOMES, files).expect("invariant: the built-in pack is sound");
+    let pack = WorldPack::builtin(HOMES).expect("invariant: the pack is built in");
     WorldData::layered(vec![pack]).expect("invariant: the built-in pack is sound")
 }
 

@@ -6,7 +6,6 @@ use std::sync::LazyLock;
 use cohabit_cdf::{
     Layout, PackFile, RoomId, WorldData, WorldPack,
     layout::{OpeningKind, Placement},
-    world_pack::builtin_files,
 };
 use cohabit_houses::{
     ImportedPlan, Importer, Reason,
@@ -159,7 +158,7 @@ fn houses_make_a_pack_that_goes_with_the_pack_homes() {
     }
     assert_eq!(pack.count(), 2);
     let files = pack.files().into_iter().map(|(path, text)| PackFile { path, bytes: text.into_bytes() }).collect();
-    let homes = WorldPack::parse("homes", builtin_files("homes").unwrap()).unwrap();
+    let homes = WorldPack::builtin("homes").unwrap();
     let world = WorldData::layered(vec![homes, WorldPack::parse("thor", files).unwrap()]).unwrap();
     for id in ["Thor0000", "Thor0001", "Thor0001_mirror"] {
         assert!(Layout::find(id, world.catalog()).unwrap().faults(world.catalog()).is_empty(), "{id}");

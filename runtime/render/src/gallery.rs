@@ -144,8 +144,8 @@ pub fn states(catalog: &Catalog, class: ClassId) -> Vec<State> {
 
 /// All sheets: those who act, signs of states, then every class that can be more than one thing, then the rest.
 pub fn sheets<'a>(meshes: &'a MeshLibrary, catalog: &'a Catalog) -> impl Iterator<Item = Sheet> + 'a {
-    let classes = (0..catalog.classes().len()).map(|index| ClassId(index as u16));
-    [bodies(meshes, catalog), signs(meshes, catalog)].into_iter().chain(sheets_of(meshes, catalog, classes))
+    let sheets = sheets_of(meshes, catalog, catalog.class_ids());
+    [bodies(meshes, catalog), signs(meshes, catalog)].into_iter().chain(sheets)
 }
 
 /// Sheets of these classes alone.

@@ -12,8 +12,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use cohabit_cdf::Catalog;
 use cohabit_cdf::layout::{Layout, Viewpoint};
-use cohabit_cdf::{Catalog, ClassId};
 use cohabit_render::{Camera, CpuRenderer, Instance, Look, MeshLibrary, Planes, Renderer, Scene, furnish, gallery};
 
 /// Pictures of one move.
@@ -163,7 +163,7 @@ fn no_object_fights_what_it_stands_on() {
     let meshes = Arc::new(MeshLibrary::build(&catalog).unwrap());
     let (mut renderer, mut stage) = (CpuRenderer::new(2), gallery::stage(&meshes));
     let mut found = String::new();
-    for class in (0..catalog.classes().len()).map(|index| ClassId(index as u16)) {
+    for class in catalog.class_ids() {
         let cell = gallery::cells(&meshes, &catalog, class).swap_remove(0);
         cell.enter(&mut stage);
         let front = Camera { for_people: false, ..cell.camera(128) };

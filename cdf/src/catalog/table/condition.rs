@@ -196,12 +196,13 @@ pub struct Condition {
 impl Condition {
     /// The same with the classes of a kind where it names one.
     pub(super) fn of_kinds(mut self, kinds: &Kinds) -> Self {
-        if let Some(pattern) = self.test.pattern_mut() {
-            pattern.0 = pattern
-                .0
-                .iter()
-                .flat_map(|name| kinds.get(name).cloned().unwrap_or_else(|| vec![name.clone()]))
-                .collect();
+        if let Test::IsA(classes)
+        | Test::HoldsA(classes)
+        | Test::HoldsWhole(classes)
+        | Test::Contains(Content::Class(classes)) = &mut self.test
+        {
+            let of_kind = |name: &String| kinds.get(name).cloned().unwrap_or_else(|| vec![name.clone()]);
+            classes.0 = classes.0.iter().flat_map(of_kind).collect();
         }
         self
     }
@@ -211,16 +212,6 @@ impl Test {
     /// The classes that it names.
     #[must_use]
     pub const fn pattern(&self) -> Option<&ClassPattern> {
-        match self {
-            Self::IsA(classes)
-            | Self::HoldsA(classes)
-            | Self::HoldsWhole(classes)
-            | Self::Contains(Content::Class(classes)) => Some(classes),
-            _ => None,
-        }
-    }
-
-    const fn pattern_mut(&mut self) -> Option<&mut ClassPattern> {
         match self {
             Self::IsA(classes)
             | Self::HoldsA(classes)

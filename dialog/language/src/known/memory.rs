@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use cohabit_cdf::{Action, Catalog, ObjectId, Property, StateFlag, Verb, table::Change};
+use cohabit_cdf::{Action, Catalog, ObjectId, Property, StateFlag, Verb, table::Device};
 use serde::{Deserialize, Serialize};
 
 use crate::known::{
@@ -314,8 +314,7 @@ fn outwards(id: ObjectId, parent: impl Fn(ObjectId) -> Option<ObjectId>) -> Vec<
 fn runs_for_a_moment(catalog: &Catalog, thing: &KnownObject) -> bool {
     let (table, class) = (catalog.table(), &catalog.class(thing.class).id);
     let device = table.device(class);
-    let mut presses = device.worked_by.iter().map(|worker| table.device(worker)).chain([device]).map(|one| &one.press);
-    presses.any(|press| press.iter().flat_map(|effect| &effect.changes).any(|one| matches!(one, Change::Run(..))))
+    device.worked_by.iter().map(|worker| table.device(worker)).chain([device]).any(Device::runs_for_a_moment)
 }
 
 fn ancestors(world: &Known, id: ObjectId) -> Vec<ObjectId> {

@@ -125,8 +125,8 @@ impl Devices {
                 .filter(|device| !device.worked_by.is_empty())
                 .flat_map(|device| known(&device.classes).into_iter().map(|class| (class, known(&device.worked_by))))
                 .collect(),
-            hammers: of_class(&|class, _| is_tool(table, &catalog.class(class).id, "break")),
-            knives: of_class(&|class, _| is_tool(table, &catalog.class(class).id, "cut without a knife")),
+            hammers: of_class(&|class, _| table.is_of_kind("hammer", &catalog.class(class).id)),
+            knives: of_class(&|class, _| table.is_of_kind("knife", &catalog.class(class).id)),
             levers: of_class(&|_, device| feeds(device)),
             made: made.collect(),
             uses: Uses::new(catalog),
@@ -319,11 +319,4 @@ fn buttons(table: &ActionTable) -> impl Iterator<Item = (String, &str)> {
         });
         colors.flat_map(|color| device.classes.iter().map(move |class| (color.clone(), class.as_str())))
     })
-}
-
-/// Whether the hand must hold a thing of that class for what a rule does.
-fn is_tool(table: &ActionTable, class: &str, rule: &str) -> bool {
-    let needs = table.rules().iter().filter(|one| one.name == rule).flat_map(|rule| &rule.needs);
-    let is_it = |test: &Test| matches!(test, Test::IsA(pattern) if pattern.matches(class));
-    needs.flat_map(|need| &need.any).any(|one| !one.negated && one.term == Term::Held && is_it(&one.test))
 }

@@ -117,15 +117,13 @@ impl Conversation<'_> {
             return likeliest.taken(context);
         }
         if reading == Reading::Partial
-            && let Some((begun, more)) = begun(&ways)
+            && let Some((begun, left)) = begun(&ways)
         {
             let (understanding, probability) = begun.taken(context);
-            let left = match more.as_str() {
-                more if more.contains('?') || more.starts_with("not ") => return (understanding, probability),
-                "" => "I am not sure what else you want: tell me, please.".to_owned(),
-                more => format!("I am not sure about {more}: tell me if you want that, too."),
+            return match left {
+                Some(left) => (understanding.before(&left), probability),
+                None => (understanding, probability),
             };
-            return (understanding.before(&left), probability);
         }
         // Of a word that nobody knows the robot asks, rather than to guess at what it may stand for.
         let is_about_word =
@@ -274,9 +272,8 @@ fn settled(ways: &[Way]) -> Option<Way> {
     (plan.probability >= TO_GUESS && probability >= settled.least()).then_some(settled)
 }
 
-/// A plan that several ways begin with, together likely enough to be carried out, and what they go on with; no words, where each of
-/// them goes on otherwise.
-fn begun(ways: &[Way]) -> Option<(Way, String)> {
+/// A plan that several ways begin with, together likely enough to be carried out, and what is said of how they go on.
+fn begun(ways: &[Way]) -> Option<(Way, Option<String>)> {
     ways.iter().find_map(|way| {
         let longer: Vec<(&Way, String)> = ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).collect();
         // Probabilities of ways are as their shares of what the rewriter writes.
@@ -284,10 +281,14 @@ fn begun(ways: &[Way]) -> Option<(Way, String)> {
         let begun = Way { probability: shares.sum(), ..way.clone() };
         let all: f32 = longer.iter().map(|(one, _)| one.probability).sum();
         let (likeliest, more) = longer.into_iter().next()?;
-        // Nobody wants a question that they never asked, and what is not to be done is not done.
-        let is_no_deed = more.contains('?') || more.starts_with("not ");
-        let more = if is_no_deed || likeliest.probability > all / 2.0 { more } else { String::new() };
-        (begun.probability >= begun.least()).then_some((begun, more))
+        let left = match likeliest.probability > all / 2.0 {
+            // Nobody wants a question that they never asked, and what is not to be done is not done.
+            _ if more.contains('?') || more.starts_with("not ") => None,
+            true => Some(format!("I am not sure about {more}: tell me if you want that, too.")),
+            // Each goes on otherwise.
+            false => Some("I am not sure what else you want: tell me, please.".to_owned()),
+        };
+        (begun.probability >= begun.least()).then_some((begun, left))
     })
 }
 

@@ -125,11 +125,15 @@ impl Conversation<'_> {
     /// Plain requests with the things that were named, where they name others of which nobody spoke and that are not around: who has read of
     /// coffee pots alone takes a teapot for one.
     pub(crate) fn with_things_said(&self, text: &str, source: &Source) -> String {
-        let requests = text.split("; ").map(|request| self.with_thing_said(request, text, source));
+        let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
+        let mut unnamed = source.things.iter().filter(|(_, classes)| classes.is_disjoint(&named));
+        // Which of several is meant nobody knows.
+        let said = unnamed.next().map(|(said, _)| said.as_str()).filter(|_| unnamed.next().is_none());
+        let requests = text.split("; ").map(|request| self.with_thing_said(request, said, source));
         requests.collect::<Vec<_>>().join("; ")
     }
 
-    fn with_thing_said(&self, request: &str, text: &str, source: &Source) -> String {
+    fn with_thing_said(&self, request: &str, said: Option<&str>, source: &Source) -> String {
         let words: Vec<String> = request.split(' ').map(str::to_owned).collect();
         let is_unheard = |word: &String| {
             let is_fluid = self.lexicon.fluids.exact(std::slice::from_ref(word)).is_some();
@@ -142,9 +146,7 @@ impl Conversation<'_> {
         {
             return [&words[..at], &["it".to_owned()], &words[at + 2..]].concat().join(" ");
         }
-        let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
-        let mut unnamed = source.things.iter().filter(|(_, classes)| classes.is_disjoint(&named));
-        let (Some((said, _)), None) = (unnamed.next(), unnamed.next()) else { return request.to_owned() };
+        let Some(said) = said else { return request.to_owned() };
         let bare = |word: &String| word.trim_end_matches('?').to_owned();
         let plain: Vec<String> = words.iter().map(bare).collect();
         for at in 0..plain.len() {

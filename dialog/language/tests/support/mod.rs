@@ -357,3 +357,11 @@ impl Talk {
         text(&understanding, &self.scene)
     }
 }
+
+/// Finds that the last of several utterances comes to `wanted`, once all before it were done.
+#[track_caller]
+pub fn means(marks: &[&str], said: &[&str], wanted: &str) {
+    let mut talk = Talk::new(marks);
+    let found = said.iter().map(|said| talk.say_and_do(said)).last().unwrap();
+    assert_eq!(found, wanted, "{said:?}");
+}

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use cohabit_cdf::{Catalog, Layout, ObjectId, RoomId, WorldData, WorldPack, world_pack::builtin_files};
+use cohabit_cdf::{Catalog, Layout, ObjectId, RoomId, WorldData, WorldPack};
 use cohabit_language::{Known, KnownObject, KnownRobot, Language};
 
 /// `plan OfficeLayout2 Lab1; add Bowl_01 on TableRound_02; Bowl_01 broken`: that floor plan, all of which the robot knows,
@@ -34,7 +34,7 @@ pub fn talk(marks: &[&str]) -> Option<(&'static Language, Known)> {
 }
 
 fn homes() -> Arc<Catalog> {
-    let pack = WorldPack::parse("homes", builtin_files("homes").unwrap()).unwrap();
+    let pack = WorldPack::builtin("homes").unwrap();
     Arc::clone(WorldData::layered(vec![pack]).unwrap().catalog())
 }
 
