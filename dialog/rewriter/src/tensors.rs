@@ -71,7 +71,7 @@ impl<'a> Tensors<'a> {
             weights.extend(values.iter().map(|value| to_whole(value * factor) as i8));
             scales.push(largest / LARGEST_WEIGHT);
         }
-        Ok(Linear::new(weights, scales))
+        Ok(Linear::new(&weights, scales))
     }
 
     fn bytes(&self, name: &str, kind: Dtype) -> Result<&'a [u8], ModelError> {

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use crate::{
     ModelError,
     matrix::Linear,
-    sums::{add, dot, softmax},
+    sums::{LANES, add, add_weighed, dot, exp, for_widest_registers, scale, softmax},
     tensors::{Embedding, Tensors},
     tokens::Token,
 };
@@ -52,7 +52,9 @@ pub(crate) struct Memory {
 
 #[derive(Clone, Debug, Default)]
 struct KeysAndValues {
-    keys: Vec<f32>,
+    /// Of as many tokens as fit into a register, side by side: `[tokens / 16, KEYS, 16]`.
+    keys: Vec<[f32; LANES]>,
+    /// `[tokens, KEYS]`
     values: Vec<f32>,
 }
 
@@ -65,7 +67,7 @@ impl Memory {
     /// The same of the first tokens alone.
     pub(crate) fn beginning(&self, length: usize) -> Self {
         let first = |layer: &KeysAndValues| KeysAndValues {
-            keys: layer.keys[..length * KEYS].to_vec(),
+            keys: layer.keys[..length.div_ceil(LANES) * KEYS].to_vec(),
             values: layer.values[..length * KEYS].to_vec(),
         };
         Self { layers: self.layers.iter().map(first).collect(), length }
@@ -152,40 +154,98 @@ impl Layer {
         }
         add(rows, &self.attended.apply(&attended));
         let both = self.gate_and_hidden.apply(&self.hidden_norm.of(rows));
-        let mut hidden = Vec::with_capacity(both.len() / 2);
-        for both in both.chunks_exact(2 * HIDDEN) {
-            let (gates, values) = both.split_at(HIDDEN);
-            hidden.extend(gates.iter().zip(values).map(|(gate, value)| silu(*gate) * value));
-        }
-        add(rows, &self.output.apply(&hidden));
+        add(rows, &self.output.apply(&gated(&both)));
     }
 }
 
 impl KeysAndValues {
+    /// How many tokens.
+    const fn count(&self) -> usize {
+        self.values.len() / KEYS
+    }
+
     /// Adds a key and, behind it, a value.
     fn push(&mut self, both: &[f32]) {
         let (key, value) = both.split_at(KEYS);
-        self.keys.extend_from_slice(key);
+        let (block, lane) = (self.count() / LANES * KEYS, self.count() % LANES);
+        if lane == 0 {
+            self.keys.resize(block + KEYS, [0.0; LANES]);
+        }
+        for (keys, key) in self.keys[block..].iter_mut().zip(key) {
+            keys[lane] = *key;
+        }
         self.values.extend_from_slice(value);
+    }
+
+    /// How well the keys of a head fit a query.
+    #[inline(always)]
+    fn fits(&self, begin: usize, query: &[f32; HEAD], fits: &mut Vec<f32>) {
+        for block in self.keys.chunks_exact(KEYS) {
+            let mut sums = [[0.0; LANES]; 4];
+            let keys = block[begin..begin + HEAD].as_chunks::<4>().0;
+            for (query, keys) in query.as_chunks::<4>().0.iter().zip(keys) {
+                for part in 0..4 {
+                    add_weighed(&mut sums[part], query[part], &keys[part]);
+                }
+            }
+            let [mut first, second, mut third, fourth] = sums;
+            add_weighed(&mut first, 1.0, &second);
+            add_weighed(&mut third, 1.0, &fourth);
+            add_weighed(&mut first, 1.0, &third);
+            fits.extend_from_slice(&first);
+        }
+        let beyond = self.keys.len() / KEYS * LANES - self.count();
+        fits.truncate(fits.len() - beyond);
+    }
+
+    /// The values of a head, weighed and added.
+    #[inline(always)]
+    fn add_values(&self, begin: usize, weights: &[f32], sums: &mut [[f32; LANES]; HEAD / LANES]) {
+        for (value, weight) in self.values.chunks_exact(KEYS).zip(weights) {
+            let value = value[begin..begin + HEAD].as_chunks::<LANES>().0;
+            for part in 0..HEAD / LANES {
+                add_weighed(&mut sums[part], *weight, &value[part]);
+            }
+        }
     }
 }
 
-/// The values, weighted by how well their keys fit the queries: several heads of queries share one of keys and values.
-fn attend(queries: &[f32], memories: [&KeysAndValues; 2]) -> Vec<f32> {
-    let scale = 1.0 / (HEAD as f32).sqrt();
-    let mut attended = vec![0.0; WIDTH];
-    for (head, (query, attended)) in queries.chunks_exact(HEAD).zip(attended.chunks_exact_mut(HEAD)).enumerate() {
-        let begin = head * KEY_HEADS / HEADS * HEAD;
-        let part = begin..begin + HEAD;
-        let keys = memories.iter().flat_map(|memory| memory.keys.chunks_exact(KEYS));
-        let mut weights: Vec<f32> = keys.map(|key| dot(query, &key[part.clone()]) * scale).collect();
-        softmax(&mut weights);
-        let values = memories.iter().flat_map(|memory| memory.values.chunks_exact(KEYS));
-        for (weight, value) in weights.iter().zip(values) {
-            attended.iter_mut().zip(&value[part.clone()]).for_each(|(sum, value)| *sum += weight * value);
+for_widest_registers! {
+    /// The values, weighted by how well their keys fit the queries: several heads of queries share one of keys and values.
+    fn attend(queries: &[f32], memories: [&KeysAndValues; 2]) -> Vec<f32> {
+        let mut attended = Vec::with_capacity(WIDTH);
+        let mut weights = Vec::with_capacity(memories[0].count() + memories[1].count() + LANES);
+        for (head, query) in queries.as_chunks::<HEAD>().0.iter().enumerate() {
+            let begin = head * KEY_HEADS / HEADS * HEAD;
+            weights.clear();
+            memories[0].fits(begin, query, &mut weights);
+            memories[1].fits(begin, query, &mut weights);
+            scale(&mut weights, 1.0 / (HEAD as f32).sqrt());
+            softmax(&mut weights);
+            let mut sums = [[0.0; LANES]; HEAD / LANES];
+            let (first, second) = weights.split_at(memories[0].count());
+            memories[0].add_values(begin, first, &mut sums);
+            memories[1].add_values(begin, second, &mut sums);
+            attended.extend_from_slice(sums.as_flattened());
         }
+        attended
     }
-    attended
+}
+
+for_widest_registers! {
+    /// `x σ(x)` of each row's first half, times its second.
+    fn gated(rows: &[f32]) -> Vec<f32> {
+        let mut hidden = Vec::with_capacity(rows.len() / 2);
+        for row in rows.chunks_exact(2 * HIDDEN) {
+            let (gates, values) = row.split_at(HIDDEN);
+            hidden.extend_from_slice(values);
+            let begin = hidden.len() - HIDDEN;
+            for (value, gate) in hidden[begin..].iter_mut().zip(gates) {
+                *value *= gate / (1.0 + exp(-gate));
+            }
+        }
+        hidden
+    }
 }
 
 /// Turns the pairs of a head's numbers (one of each half) by angles that grow with the position.
@@ -199,11 +259,6 @@ fn rotate(head: &mut [f32], position: usize) {
         let (sine, cosine) = libm::sincosf(position as f32 * frequency);
         (*one, *other) = (*one * cosine - *other * sine, *other * cosine + *one * sine);
     }
-}
-
-/// `x σ(x)`
-fn silu(x: f32) -> f32 {
-    x / (1.0 + libm::expf(-x))
 }
 
 /// Scales each row to a mean square of 1, then by the learned numbers.
