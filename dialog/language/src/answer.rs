@@ -20,8 +20,12 @@ use crate::{
         judge::Judge,
         want::{Miss, Want},
     },
-    known::{Known, KnownObject, contents, describe, process::Devices},
-    read::{phrase::Phrase, question::Question, saying},
+    known::{Known, KnownObject, contents, describe, memory, process::Devices},
+    read::{
+        phrase::{Phrase, RelationKind},
+        question::Question,
+        saying,
+    },
     say::reply::HINT,
     understanding::Understanding,
     words::{
@@ -212,6 +216,16 @@ impl Answerer<'_> {
         }
     }
 
+    /// `the tip in the laser`, which stands here and has none: that it is not there, and what has none.
+    pub(crate) fn absent(&self, phrase: &Phrase) -> Option<(String, ObjectId)> {
+        let [relation] = phrase.relations.as_slice() else { return None };
+        let at = self.ground().one(&relation.to, &Want::place(Intent::Find, &[], None)).ok()?;
+        let place = self.scene.object(at)?;
+        let is_in_view = place.visible && !memory::is_shut(self.catalog, place);
+        (is_in_view && relation.kind == RelationKind::Inside)
+            .then(|| (format!("I do not see {}.", saying::said(phrase)), at))
+    }
+
     /// The same with what is known of the object.
     pub(crate) fn with_known(&self, phrase: &Phrase, then: impl Fn(&KnownObject) -> Understanding) -> Understanding {
         let of = |id| self.scene.object(id).map_or_else(|| Understanding::refusal(HINT), &then);
@@ -221,6 +235,9 @@ impl Answerer<'_> {
     pub(crate) fn unseen(&self, phrase: &Phrase) -> Understanding {
         if saying::noun(phrase).is_none() {
             return Understanding::refusal(saying::unresolved(phrase));
+        }
+        if let Some((text, place)) = self.absent(phrase) {
+            return Understanding::whether(false, text, vec![place]);
         }
         let said = saying::said(phrase);
         if self.scene.floor.is_some() && (phrase.unknown.is_empty() || !phrase.namings.is_empty()) {

@@ -208,3 +208,46 @@ fn why_something_was_not_done_is_that_nobody_asked_for_it() {
     let told = talk.say("why did you open the microwave?");
     assert!(told.starts_with("= I opened the microwave, since you"), "{told}");
 }
+
+const LAB: [&str; 2] = ["plan OfficeLayout1 Lab1", "add CanSodaNew_01 on Desk_01"];
+
+#[test]
+fn what_a_machine_lacks_is_told() {
+    let mut talk = Talk::new(&LAB);
+    assert_eq!(talk.say("is the laser assembled?"), "= Yes, I see nothing wrong with the laser.");
+    talk.scene.objects.retain(|object| !matches!(object.instance.as_str(), "Laser_Tip" | "Laser_ControlPanel"));
+    let lacks = "t lacks its laser tip and it lacks its control panel.";
+    for said in
+        ["what is missing from the laser?", "what is wrong with the laser?", "are any parts missing on the laser?"]
+    {
+        assert_eq!(talk.say(said), format!("= I{lacks}"), "{said}");
+    }
+    assert_eq!(talk.say("is the laser assembled?"), format!("= No, there is something wrong with the laser: i{lacks}"));
+}
+
+#[test]
+fn what_is_not_where_it_was_thought_to_be_is_not_looked_for() {
+    let mut talk = Talk::new(&LAB);
+    talk.scene.objects.retain(|object| object.instance != "Laser_Tip");
+    assert_eq!(talk.say("is there a laser tip in the laser?"), "= No, I do not see a laser tip in the laser.");
+}
+
+#[test]
+fn what_cereal_is_poured_out_of_is_full_of_it() {
+    let kitchen = ["plan OfficeLayout1 BreakRoom", "add Cereal_Box_01 on KitchenCounterTop_02"];
+    check(&kitchen, "what is in the cereal box?", "= There is cereal in the cereal box.");
+    check(&kitchen, "is the cereal box empty?", "= No, the cereal box is not empty.");
+}
+
+#[test]
+fn a_can_is_no_modal_verb() {
+    let mut talk = Talk::new(&LAB);
+    assert_eq!(talk.say_and_do("bring the can to the main office"), "take CanSodaNew_01, go MainOffice");
+}
+
+#[test]
+fn a_question_beside_thanks_is_answered() {
+    let kitchen = ["plan OfficeLayout1 BreakRoom", "add Apple on TableRound_02"];
+    let found = Talk::new(&kitchen).say("You were a star, thanks a million! Where did you say the apple was?");
+    assert!(found.contains("round table"), "{found}");
+}

@@ -57,6 +57,7 @@ def main():
     options.add_argument("--rate", type=float, default=4e-4, help="the highest rate of learning")
     options.add_argument("--dropout", type=float, default=0.0, help="how much of what a layer adds is left out while it learns")
     options.add_argument("--rounded-after", type=float, default=0.6, help="the share of the time after which it computes with its weights as they are rounded in the end")
+    options.add_argument("--often", nargs="*", default=[], help="writers that are drawn as often as all others together: what a model that is gone on with has not read")
     options.add_argument("--seed", type=int, default=SEED, help="what is drawn by chance")
     options.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu", help="cpu or cuda")
     options.add_argument("--compile", action="store_true", help="compile the layers first: a fifth faster, and needs a C++ compiler")
@@ -143,13 +144,14 @@ def of_talk(file):
 class Samples:
     """Draws utterances with their labels, and variants of them."""
 
-    def __init__(self, seed):
+    def __init__(self, seed, often=()):
         self.random = random.Random(seed)
         self.corpus = list(of_corpus())
         writers = sorted(file.stem for file in corpus.WRITERS.glob("*.txt") if file.stem not in UNSEEN)
         self.written = [sample for writer in writers for sample in of_writer(writer)]
         talks = [file for file in TALKS if file.stem not in UNSEEN_TALKS]
         self.written += [sample for file in talks for sample in of_talk(file)]
+        self.often = [sample for writer in often for sample in of_writer(writer)]
         #: What may be said at the beginning, by what is around.
         self.beginnings = {}
         for around, before, said, labels, _ in self.written:
@@ -167,7 +169,8 @@ class Samples:
     def draw(self):
         """The tokens that are read, and those that are to be written."""
         chance = self.random.random
-        around, before, said, labels, by_words = self.random.choice(self.corpus if chance() < CORPUS_SHARE else self.written)
+        drawn = self.often if self.often and chance() < 0.5 else self.corpus if chance() < CORPUS_SHARE else self.written
+        around, before, said, labels, by_words = self.random.choice(drawn)
         label = surest(labels)
         if not by_words and label not in WITHOUT_REQUEST and chance() < PLAIN_SHARE:
             before, said = [], self.joined(label.split("; "))
@@ -231,12 +234,12 @@ def surest(labels):
 class Batches(IterableDataset):
     """Batches without end, which as many processes as are asked for draw ahead."""
 
-    def __init__(self, seed, size):
-        self.seed, self.size = seed, size
+    def __init__(self, seed, size, often):
+        self.seed, self.size, self.often = seed, size, often
 
     def __iter__(self):
         worker = get_worker_info()
-        return Samples(1000 * self.seed + (worker.id if worker else 0)).batches(self.size)
+        return Samples(1000 * self.seed + (worker.id if worker else 0), self.often).batches(self.size)
 
 
 def train(model, given):
@@ -246,7 +249,7 @@ def train(model, given):
     trained = [one for one in model.parameters() if one.requires_grad]
     optimizer = torch.optim.AdamW(trained, weight_decay=0.01, betas=(0.9, 0.98), fused=True)
     on_gpu = given.device != "cpu"
-    batches = DataLoader(Batches(given.seed, GPU_BATCH if on_gpu else BATCH), batch_size=None, num_workers=6 if on_gpu else 0)
+    batches = DataLoader(Batches(given.seed, GPU_BATCH if on_gpu else BATCH, given.often), batch_size=None, num_workers=6 if on_gpu else 0)
     begun, losses = time.monotonic(), []
     for step, (read, wanted) in enumerate(batches, 1):
         done = (time.monotonic() - begun) / (60 * given.minutes)

@@ -1,9 +1,21 @@
 //! What classes of things afford, whatever state they are in.
 
-use super::{ActionKind, ActionTable, Condition, Need, Term, Test, takes};
+use super::{ActionKind, ActionTable, ClassPattern, Condition, Need, Term, Test, takes};
 use crate::catalog::ObjectClass;
 
 impl ActionTable {
+    /// What has to be in a machine of that class before it can be worked; of each part any of its classes will do.
+    pub fn parts_needed(&self, machine: &str) -> impl Iterator<Item = &ClassPattern> {
+        let by_others = self.devices().iter().filter(move |device| device.works.iter().any(|class| class == machine));
+        let worked = by_others.map(|device| (device, Term::Machine)).chain([(self.device(machine), Term::It)]);
+        let needs = worked
+            .flat_map(|(device, term)| device.needs.iter().flat_map(|need| &need.any).map(move |one| (one, term)));
+        needs.filter_map(|(condition, term)| match &condition.test {
+            Test::HoldsA(part) | Test::HoldsWhole(part) if condition.term == term && !condition.negated => Some(part),
+            _ => None,
+        })
+    }
+
     /// Whether an action on a thing of a class can be allowed in any state to a body that holds a thing of another class, or
     /// nothing: what the classes alone rule out is not afforded.
     #[must_use]

@@ -9,7 +9,10 @@ use crate::{
         Answerer,
         claim::{Claim, Filling},
     },
-    ground::{has_state, want::Want},
+    ground::{
+        has_state,
+        want::{Miss, Want},
+    },
     known::{KnownObject, contents, describe},
     read::{
         phrase::{Phrase, RelationKind},
@@ -67,10 +70,16 @@ impl Answerer<'_> {
                 Understanding::whether(holds, text, vec![object.id])
             }),
             Claim::Same(described, named) => self.is_same(&described, &named),
-            Claim::Placed => self.with_object(&bare, |id| {
-                let holds = self.ground().narrow(phrase, &[id]) == [id];
-                self.told(holds, &self.place_sentence(id), id)
-            }),
+            Claim::Placed => match self.ground().one(&bare, &Want::place(Intent::Find, &[], None)) {
+                Err(Miss::Unseen) => match self.absent(phrase) {
+                    Some((text, place)) => Understanding::whether(false, format!("No, {text}"), vec![place]),
+                    None => self.unseen(&bare),
+                },
+                _ => self.with_object(&bare, |id| {
+                    let holds = self.ground().narrow(phrase, &[id]) == [id];
+                    self.told(holds, &self.place_sentence(id), id)
+                }),
+            },
             Claim::Present => self.place_of(&bare),
             Claim::Untold => self.with_known(&bare, |object| self.cannot_tell(object)),
         }
@@ -240,6 +249,7 @@ impl Answerer<'_> {
             }
             // What things stand in is not empty.
             StateWord::Filled(is_full) if self.scene.contents(object.id).next().is_some() => is_full,
+            StateWord::Filled(is_full) if contents::has_cereal(self.catalog, object) => is_full,
             StateWord::Flag(StateFlag::Broken, is_broken) => self.facts().is_broken(object) == is_broken,
             state => has_state(object, state),
         }

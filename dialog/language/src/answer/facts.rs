@@ -3,7 +3,7 @@
 use cohabit_cdf::{Catalog, ClassId, Fluid, ObjectId, Property, state::StateFlag};
 
 use crate::{
-    known::{Known, KnownObject, describe, process::Devices},
+    known::{Known, KnownObject, describe, memory, process::Devices},
     words::prose,
 };
 
@@ -184,8 +184,21 @@ impl Facts<'_> {
         let is_told = self.scene.objects.iter().any(|other| other.has(StateFlag::Powered));
         let has_no_power = is_told && class.has(Property::Powerable) && !object.has(StateFlag::Powered);
         let no_power = has_no_power.then(|| "it has no power".to_owned());
-        let wrong: Vec<String> = wrong.chain(no_power).collect();
+        let lacks = self.parts_lacked(object).map(|part| format!("it lacks its {part}"));
+        let wrong: Vec<String> = wrong.chain(no_power).chain(lacks).collect();
         (!wrong.is_empty()).then(|| prose::list(&wrong, "and"))
+    }
+
+    /// The names of parts that it is not worked without, and that are not in it as far as can be seen.
+    fn parts_lacked(&self, object: &KnownObject) -> impl Iterator<Item = String> {
+        let is_hidden = memory::is_shut(self.catalog, object);
+        let parts = self.catalog.table().parts_needed(&self.catalog.class(object.class).id);
+        parts.filter(move |_| !is_hidden).filter_map(|part| {
+            let is_part = |inner: &KnownObject| part.matches(&self.catalog.class(inner.class).id);
+            let name = |class| describe::name(self.catalog, class);
+            let is_there = self.scene.contents(object.id).any(is_part);
+            if is_there { None } else { part.0.iter().find_map(|class| self.catalog.find(class)).map(name) }
+        })
     }
 
     /// Whether to touch it is deadly, or may be; nothing, where no danger is known.

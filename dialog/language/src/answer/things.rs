@@ -25,7 +25,7 @@ impl Answerer<'_> {
     pub(crate) fn fillings(&self, id: ObjectId) -> Option<String> {
         let object = self.scene.object(id)?;
         let mut filling: Vec<String> = Vec::new();
-        if object.has(StateFlag::Cereal) {
+        if contents::has_cereal(self.catalog, object) {
             filling.push("cereal".to_owned());
         }
         if object.fluid != Fluid::None {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Catalog, ObjectId, Property};
+use cohabit_cdf::{Catalog, ObjectId, Property, state::StateFlag};
 
 use crate::{
     known::{Known, KnownObject, describe, floor},
@@ -16,6 +16,14 @@ const LIST_TO_END: usize = 5;
 
 /// How far from a thing's rim something is still under it or behind it, m.
 const BESIDE_M: f32 = 0.2;
+
+/// What cereal is poured out of, without an end.
+pub(crate) const CEREAL_BOX: &str = "Cereal_Box_01";
+
+/// Whether there is cereal in it.
+pub(crate) fn has_cereal(catalog: &Catalog, object: &KnownObject) -> bool {
+    object.has(StateFlag::Cereal) || catalog.class(object.class).id == CEREAL_BOX
+}
 
 /// `a cup, two plates and 3 more`, without the first so many, which were told before.
 pub(crate) fn listed(catalog: &Catalog, scene: &Known, objects: &[&KnownObject], told: usize) -> String {

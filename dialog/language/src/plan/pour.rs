@@ -4,7 +4,7 @@ use cohabit_cdf::{Action, Fluid, ObjectId, Property, StateFlag, Verb};
 
 use crate::{
     ground::want::{Miss, Want},
-    known::KnownObject,
+    known::{KnownObject, contents},
     plan::{
         Fault, Planner,
         carry::TAKES,
@@ -16,9 +16,6 @@ use crate::{
     },
     words::intent::Intent,
 };
-
-/// What is poured though it holds nothing.
-const CEREAL: &str = "Cereal_Box_01";
 
 impl Planner<'_> {
     pub(crate) fn add_pour(&mut self, settled: &Settled) -> Result<(), Fault> {
@@ -67,7 +64,7 @@ impl Planner<'_> {
 
     /// Whether there is anything to it that flows.
     fn can_be_poured(&self, source: ObjectId) -> bool {
-        let is_cereal = |known: &KnownObject| Some(known.class) == self.catalog.find(CEREAL);
+        let is_cereal = |known: &KnownObject| Some(known.class) == self.catalog.find(contents::CEREAL_BOX);
         self.has(source, Property::Fillable) || self.scene.object(source).is_some_and(is_cereal)
     }
 

@@ -23,6 +23,8 @@ use crate::{
 const DOUBTFUL: f32 = 0.4;
 /// How likely a rewriting is that names something of which nobody spoke, once that is what was named.
 const RENAMED: f32 = 0.5;
+/// How likely it is at least that something is asked for beside a stop.
+const LIKELY: f32 = 0.3;
 /// What is said to talk of no known kind.
 const SEEN: &str = "I see. I am here when you need me.";
 const AGREED: &str = "OK.";
@@ -36,7 +38,7 @@ impl Conversation<'_> {
         let (mut ways, mut is_doubtful, mut unread) = (Vec::<Way>::new(), false, 0.0);
         let around = self.around();
         let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
-        for (at, (text, probability)) in self.rewritings(wording.utterance, context, &around).iter().enumerate() {
+        for (at, (text, probability)) in self.with_question(wording.utterance, context, &around).iter().enumerate() {
             let kept = self.with_things_said(text, &source);
             let probability = if kept == *text { *probability } else { probability * RENAMED };
             let text = &self.with_this_room(&self.without_invention(&kept, &source), &source);
@@ -68,6 +70,24 @@ impl Conversation<'_> {
         }
         ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));
         ways
+    }
+
+    /// What the rewriter makes of an utterance; where that is talk alone, and a question stands in it, what it makes of the question.
+    fn with_question(&self, utterance: &str, context: &Context, around: &str) -> Vec<(String, f32)> {
+        let all = self.rewritings(utterance, context, around);
+        let is_talk_alone = |all: &[(String, f32)]| all.first().is_some_and(|(text, _)| asks_nothing(text));
+        let Some(question) = is_talk_alone(&all).then(|| question_among(utterance)).flatten() else { return all };
+        let asked = self.rewritings(&question, context, around);
+        if is_talk_alone(&asked) { all } else { asked }
+    }
+
+    /// Whether it is rather a request or a question than anything else.
+    pub(crate) fn is_rewritten_as_request(&self, utterance: &str, context: &Context) -> bool {
+        let all = self.rewritings(utterance, context, &self.around());
+        let asks = |text: &str| !asks_nothing(text) && !matches!(asking(text).as_str(), "?" | "stop" | "wait");
+        let asked: f32 = all.iter().filter(|(text, _)| asks(text)).map(|(_, probability)| probability).sum();
+        let rest: f32 = all.iter().filter(|(text, _)| !asks(text)).map(|(_, probability)| probability).sum();
+        asked > rest.max(LIKELY)
     }
 
     /// Whether plain requests name something that nobody knows; of the verb they begin with another one may be meant.
@@ -175,6 +195,18 @@ fn asking(text: &str) -> String {
     let asks = |request: &&str| *request != "none" && !is_talk(request);
     let requests: Vec<&str> = text.split("; ").filter(asks).collect();
     if requests.is_empty() { text.to_owned() } else { requests.join("; ") }
+}
+
+/// Whether a rewriting is talk alone, or nothing to a robot.
+fn asks_nothing(text: &str) -> bool {
+    text.split("; ").all(|request| request == "none" || is_talk(request))
+}
+
+/// The sentences of an utterance that ask, where others do not.
+fn question_among(utterance: &str) -> Option<String> {
+    let sentences = || utterance.split_inclusive(['.', '!', '?', '\n']).map(str::trim).filter(|one| one.len() > 1);
+    let asked: Vec<&str> = sentences().filter(|one| one.ends_with('?')).collect();
+    (!asked.is_empty() && asked.len() < sentences().count()).then(|| asked.join(" "))
 }
 
 /// An utterance behind the lines before it, as text.

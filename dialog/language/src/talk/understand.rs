@@ -98,7 +98,9 @@ impl Conversation<'_> {
         context.search = None;
         context.awaited = None;
         context.later.clear();
-        let then = self.asks_for_anything(rest).then(|| Box::new(self.understand_whole(rest, context).0));
+        // A reason for it is taken for many things, but it is no question.
+        let asks = self.asks_for_anything(rest) || rest.contains('?') && self.is_rewritten_as_request(rest, context);
+        let then = asks.then(|| Box::new(self.understand_whole(rest, context).0));
         Understanding::Stop { reply: STOPS.to_owned(), then }
     }
 

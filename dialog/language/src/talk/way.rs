@@ -41,7 +41,15 @@ impl Way {
             (Some(one), Some(other)) => one.comes_to(other),
             (one, other) => one.is_none() == other.is_none(),
         };
-        is_same && seeks_same && self.context.later == other.context.later
+        is_same && seeks_same && self.does_the_same_later(other)
+    }
+
+    /// Whether both do the same afterwards; what they then answer may differ, as a question that was meant otherwise does no harm.
+    fn does_the_same_later(&self, other: &Self) -> bool {
+        let deeds = |way: &Self| -> Vec<String> {
+            way.context.later.iter().filter(|text| !text.ends_with('?')).cloned().collect()
+        };
+        self.context.later.is_empty() == other.context.later.is_empty() && deeds(self) == deeds(other)
     }
 
     /// Whether it begins by looking for something.
