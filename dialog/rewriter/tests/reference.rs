@@ -6,11 +6,14 @@ use serde_json::Value;
 
 /// How far the logarithm of a probability may be from that of the other program, whose sums are less exact.
 const TOLERANCE: f64 = 0.35;
+/// Below this logarithm of a probability the other program doubts itself: what is all but as likely may come first here.
+const DOUBTFUL: f64 = -1.2;
 
 #[test]
 fn rewritings_are_those_of_the_program_that_fitted_it() {
-    let rows: Vec<Value> = serde_json::from_str(include_str!("rewritings.json")).unwrap();
-    assert!(rows.len() >= 40);
+    let mut rows: Vec<Value> = serde_json::from_str(include_str!("rewritings.json")).unwrap();
+    rows.retain(|row| row["log_probability"].as_f64().unwrap() > DOUBTFUL);
+    assert!(rows.len() >= 25, "{}", rows.len());
     let mut alike = 0;
     for row in &rows {
         let before = row["before"].as_array().unwrap().iter();
@@ -32,8 +35,7 @@ fn rewritings_are_those_of_the_program_that_fitted_it() {
             println!("{}: {wanted} {}, not {rewritings:?}", row["said"], row["log_probability"]);
         }
     }
-    // Where two ways are all but as likely, sums in another order may choose the other.
-    assert!(alike * 10 >= rows.len() * 9, "{alike} of {}", rows.len());
+    assert!(alike * 20 >= rows.len() * 19, "{alike} of {}", rows.len());
 }
 
 #[test]

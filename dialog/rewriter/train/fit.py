@@ -28,7 +28,7 @@ from language_model import END, LanguageModel
 SEED = 1
 #: How many utterances a batch has, on a CPU and on a GPU.
 BATCH, GPU_BATCH = 32, 128
-BATCHES_AHEAD, WARM_UP = 12, 60
+BATCHES_AHEAD = 12
 #: The length of rows of a batch is a multiple of this, so that memory is asked for in few sizes.
 LENGTH_STEP = 16
 MOST_WRITTEN = 70
@@ -55,13 +55,14 @@ def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--minutes", type=float, default=90, help="how long to train")
     options.add_argument("--rate", type=float, default=4e-4, help="the highest rate of learning")
+    options.add_argument("--warm-up", type=int, default=60, help="how many steps it takes to get to that rate")
     options.add_argument("--dropout", type=float, default=0.0, help="how much of what a layer adds is left out while it learns")
     options.add_argument("--rounded-after", type=float, default=0.6, help="the share of the time after which it computes with its weights as they are rounded in the end")
     options.add_argument("--often", nargs="*", default=[], help="writers that are drawn as often as all others together: what a model that is gone on with has not read")
     options.add_argument("--seed", type=int, default=SEED, help="what is drawn by chance")
     options.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu", help="cpu or cuda")
     options.add_argument("--compile", action="store_true", help="compile the layers first: a fifth faster, and needs a C++ compiler")
-    options.add_argument("--begin", type=Path, nargs="*", default=[], help="a model to go on with, as --out or, with all its bits, --keep writes it; or several of the latter: their mean")
+    options.add_argument("--begin", type=Path, nargs="*", default=[], help="a model to go on with, as --out or, with all its bits, --keep writes it; or several: their mean")
     options.add_argument("--keep", type=Path, help="where the model is kept with all its bits")
     options.add_argument("--compare", nargs="*", default=[], help="writers or talks whose utterances are then rewritten and compared")
     options.add_argument("--out", type=Path, default=corpus.CRATE / "rewriter.safetensors", help="the model")
@@ -88,12 +89,17 @@ def main():
 
 
 def begin(model, files):
-    """Takes what was learnt before."""
-    if files and files[0].suffix == ".safetensors":
-        model.take(load_file(files[0]))
-    elif files:
-        kept = [torch.load(file, map_location="cpu") for file in files]
+    """Takes what was learnt before; of several models the mean."""
+    if files:
+        kept = [weights_of(model, file) for file in files]
         model.load_state_dict({name: sum(one[name] for one in kept) / len(kept) for name in kept[0]})
+
+
+def weights_of(model, file):
+    if file.suffix != ".safetensors":
+        return torch.load(file, map_location="cpu")
+    model.take(load_file(file))
+    return {name: weights.clone() for name, weights in model.state_dict().items()}
 
 
 def plain(label):
@@ -258,7 +264,7 @@ def train(model, given):
         if done >= given.rounded_after:
             set_rounded(model, True)
         for group in optimizer.param_groups:
-            group["lr"] = given.rate * min(1, step / WARM_UP) * max(0.02, 1 - done)
+            group["lr"] = given.rate * min(1, step / given.warm_up) * max(0.02, 1 - done)
         with torch.autocast(given.device, torch.bfloat16):
             loss = model.loss(read.to(given.device), wanted.to(given.device))
         optimizer.zero_grad()

@@ -112,7 +112,11 @@ impl Conversation<'_> {
         if reading == Reading::Short {
             ways.retain(|way| way.steps().is_some());
         }
-        let least = |way: &Way| way.least().max(reading.to_overrule());
+        // Of a word that nobody knows the robot asks, rather than to guess at what it may stand for.
+        let is_about_word = wording.length() <= SHORT
+            && matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Appearance, .. });
+        let to_overrule = if is_about_word { TO_OVERRULE_SHORT } else { reading.to_overrule() };
+        let least = |way: &Way| way.least().max(to_overrule);
         if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
             return likeliest.taken(context);
         }
@@ -125,10 +129,7 @@ impl Conversation<'_> {
                 None => (understanding, probability),
             };
         }
-        // Of a word that nobody knows the robot asks, rather than to guess at what it may stand for.
-        let is_about_word =
-            matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Appearance, .. });
-        if is_about_word && wording.length() <= SHORT {
+        if is_about_word {
             return by_grammar.taken(context);
         }
         // What the grammar leaves words out of is a guess too.
