@@ -4,6 +4,8 @@
 //! Sums of up to 8,191 such products fit into 32 bits, so that nothing wraps; a check for it would cost more than the products.
 //! Weights lie in the order in which they are needed, so that each of a register's sums is that of an output and none has to be added up in the end.
 
+use crate::sums::nearest;
+
 /// The largest rounded input.
 const LARGEST_INPUT: f32 = 2047.0;
 
@@ -78,10 +80,9 @@ fn round(rows: &[f32], length: usize) -> (Vec<Pair>, Vec<f32>) {
     (rounded, scales)
 }
 
-/// The nearest whole number of one between -2¹¹ and 2¹¹; halves to even. Adding 1.5 · 2²³ leaves no place for a fraction.
+/// The nearest whole number of one between -2¹¹ and 2¹¹.
 pub(crate) fn to_whole(value: f32) -> i16 {
-    const SHIFT: f32 = 12_582_912.0;
-    ((value + SHIFT) - SHIFT) as i16
+    nearest(value) as i16
 }
 
 /// `sums[r, o]`: row `r`, of `pairs`, weighed as output `o` does.

@@ -73,15 +73,20 @@ fn total(mut lanes: [f32; LANES]) -> f32 {
     lanes[0]
 }
 
+/// The nearest whole number of one between -2²² and 2²²; halves to even. Adding 1.5 · 2²³ leaves no place for a fraction.
+#[inline(always)]
+pub(crate) fn nearest(value: f32) -> f32 {
+    const SHIFT: f32 = 12_582_912.0;
+    (value + SHIFT) - SHIFT
+}
+
 /// `eˣ`, to some 10⁻⁷ of it; 0 where that is less than 10⁻³⁷. Without branches, so that many are computed side by side.
 #[inline(always)]
 pub(crate) fn exp(x: f32) -> f32 {
-    /// Adding 1.5 · 2²³ leaves no place for a fraction.
-    const SHIFT: f32 = 12_582_912.0;
     /// The natural logarithm of 2: its first bits, so that products with whole numbers are exact, and the rest.
     const LN_2: (f32, f32) = (0.693_359_4, -2.121_944_4e-4);
     let x = x.clamp(-87.0, 88.0);
-    let power = x * std::f32::consts::LOG2_E + SHIFT - SHIFT;
+    let power = nearest(x * std::f32::consts::LOG2_E);
     let rest = x - power * LN_2.0 - power * LN_2.1;
     // The series of eʳ, its last terms weighed for |r| < ln 2 / 2 (Cephes, expf).
     let mut series = 1.987_569_1e-4;
@@ -92,8 +97,11 @@ pub(crate) fn exp(x: f32) -> f32 {
     series * f32::from_bits(((power as i32 + 127) as u32) << 23)
 }
 
+#[inline(always)]
 pub(crate) fn add(rows: &mut [f32], others: &[f32]) {
-    rows.iter_mut().zip(others).for_each(|(value, other)| *value += other);
+    for (value, other) in rows.iter_mut().zip(others) {
+        *value += other;
+    }
 }
 
 /// Adds the others, each times `weight`.

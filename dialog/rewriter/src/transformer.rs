@@ -189,9 +189,9 @@ impl KeysAndValues {
                 }
             }
             let [mut first, second, mut third, fourth] = sums;
-            add_weighed(&mut first, 1.0, &second);
-            add_weighed(&mut third, 1.0, &fourth);
-            add_weighed(&mut first, 1.0, &third);
+            add(&mut first, &second);
+            add(&mut third, &fourth);
+            add(&mut first, &third);
             fits.extend_from_slice(&first);
         }
         let beyond = self.keys.len() / KEYS * LANES - self.count();

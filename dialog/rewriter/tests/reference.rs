@@ -11,10 +11,12 @@ const DOUBTFUL: f64 = -1.2;
 
 #[test]
 fn rewritings_are_those_of_the_program_that_fitted_it() {
-    let mut rows: Vec<Value> = serde_json::from_str(include_str!("rewritings.json")).unwrap();
-    rows.retain(|row| row["log_probability"].as_f64().unwrap() > DOUBTFUL);
-    assert!(rows.len() >= 25, "{}", rows.len());
-    let mut alike = 0;
+    let rows: Vec<Value> = serde_json::from_str(include_str!("rewritings.json")).unwrap();
+    assert!(rows.len() >= 40);
+    let is_sure = |row: &&Value| row["log_probability"].as_f64().unwrap() > DOUBTFUL;
+    let sure = rows.iter().filter(is_sure).count();
+    assert!(sure >= 25, "{sure}");
+    let (mut alike, mut sure_alike) = (0, 0);
     for row in &rows {
         let before = row["before"].as_array().unwrap().iter();
         let before: Vec<Line> =
@@ -31,11 +33,13 @@ fn rewritings_are_those_of_the_program_that_fitted_it() {
         };
         if same.is_some_and(|same| is_close(same.probability)) {
             alike += 1;
+            sure_alike += usize::from(is_sure(&row));
         } else {
             println!("{}: {wanted} {}, not {rewritings:?}", row["said"], row["log_probability"]);
         }
     }
-    assert!(alike * 20 >= rows.len() * 19, "{alike} of {}", rows.len());
+    assert!(sure_alike * 20 >= sure * 19, "{sure_alike} of {sure}");
+    assert!(alike * 20 >= rows.len() * 17, "{alike} of {}", rows.len());
 }
 
 #[test]
