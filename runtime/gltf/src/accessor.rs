@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, cell::Cell};
 
-use gltf::json::{
+use gltf_json::{
     Index, Root,
     accessor::{Accessor, ComponentType, sparse::Sparse},
     buffer::View,

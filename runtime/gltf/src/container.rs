@@ -1,6 +1,6 @@
 //! From bytes to a document: GLB and JSON, with its version and the extensions that it requires.
 
-use gltf::json::{Root, deserialize};
+use gltf_json::{Root, deserialize};
 
 use crate::error::GltfError;
 

@@ -1,14 +1,15 @@
 //! Pictures of textures: decoded, made small, and averaged over triangles.
 
-use gltf::{
-    Document,
-    buffer::Data as Buffer,
-    image::{Data, Format, Source},
-    json::{
-        deserialize,
-        texture::{Sampler, WrappingMode},
-        validation::Checked,
-    },
+use std::io::Cursor;
+
+use gltf_json::{
+    texture::{Sampler, WrappingMode},
+    validation::Checked,
+};
+use png::{Decoder, Transformations};
+use zune_jpeg::{
+    JpegDecoder,
+    zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions},
 };
 
 use crate::error::GltfError;
@@ -27,6 +28,13 @@ pub(crate) enum Meaning {
     Color,
     /// Shares, which stay as they are.
     Shares,
+}
+
+/// How a picture is written.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Kind {
+    Png,
+    Jpeg,
 }
 
 /// A picture, small, with what it hides.
@@ -61,27 +69,21 @@ impl Picture {
             let reason = format!("a picture of {} by {} pixels: at most {MOST_PIXELS} pixels", size[0], size[1]);
             return Err(GltfError::at(at, format!("{reason}: make the texture smaller")));
         }
-        let data = decode(bytes, kind).map_err(|error| GltfError::at(at, format!("the picture is broken: {error}")))?;
-        let picture = Self::small(&data, meaning);
-        picture.ok_or_else(|| GltfError::at(at, "a picture of a kind that is not read: save the texture as 8-bit PNG"))
+        let size = size.map(|side| side as usize);
+        let pixels = match kind {
+            Kind::Png => of_png(bytes).map_err(|error| error.to_string()),
+            Kind::Jpeg => of_jpeg(bytes).map_err(|error| error.to_string()),
+        };
+        let pixels = pixels.and_then(|(pixels, channels)| {
+            let picture = Self::small(&pixels, channels, size, meaning);
+            picture.ok_or_else(|| format!("of {} by {} pixels some are missing", size[0], size[1]))
+        });
+        pixels.map_err(|error| GltfError::at(at, format!("the picture is broken: {error}")))
     }
 
-    /// Means of squares of pixels.
-    fn small(data: &Data, meaning: Meaning) -> Option<Self> {
-        let (channels, wide) = match data.format {
-            Format::R8 => (1, 1),
-            Format::R8G8 => (2, 1),
-            Format::R8G8B8 => (3, 1),
-            Format::R8G8B8A8 => (4, 1),
-            Format::R16 => (1, 2),
-            Format::R16G16 => (2, 2),
-            Format::R16G16B16 => (3, 2),
-            Format::R16G16B16A16 => (4, 2),
-            Format::R32G32B32FLOAT | Format::R32G32B32A32FLOAT => return None,
-        };
-        let full = [usize::try_from(data.width).ok()?, usize::try_from(data.height).ok()?];
-        let pixel = channels * wide;
-        if full.contains(&0) || data.pixels.len() < full[0] * full[1] * pixel {
+    /// Means of squares of pixels; nothing where some are missing.
+    fn small(pixels: &[u8], channels: usize, full: [usize; 2], meaning: Meaning) -> Option<Self> {
+        if pixels.len() < full[0] * full[1] * channels {
             return None;
         }
         let step = full[0].max(full[1]).div_ceil(LONGEST_SIDE);
@@ -90,11 +92,9 @@ impl Picture {
             Meaning::Color => (0..=255).map(linear).collect(),
             Meaning::Shares => (0..=255_u8).map(|value| f32::from(value) / 255.0).collect(),
         };
-        // The upper byte of wide channels, which are in the order of the machine.
-        let upper = if wide == 2 && cfg!(target_endian = "little") { 1 } else { 0 };
         let texel = |x: usize, y: usize| -> [f32; 4] {
-            let at = (y * full[0] + x) * pixel;
-            let channel = |channel: usize| usize::from(data.pixels[at + channel * wide + upper]);
+            let at = (y * full[0] + x) * channels;
+            let channel = |channel: usize| usize::from(pixels[at + channel]);
             let gray = light[channel(0)];
             match channels {
                 1 => [gray, gray, gray, 1.0],
@@ -161,10 +161,10 @@ pub(crate) fn linear(value: u8) -> f32 {
 }
 
 /// The kind of a picture, and its width and height, from its first bytes.
-fn measure(bytes: &[u8]) -> Option<(&'static str, [u32; 2])> {
+fn measure(bytes: &[u8]) -> Option<(Kind, [u32; 2])> {
     if bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.get(12..16)? == b"IHDR" {
         let side = |at: usize| Some(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
-        return Some(("image/png", [side(16)?, side(20)?]));
+        return Some((Kind::Png, [side(16)?, side(20)?]));
     }
     // Segments of JPEG up to the one that begins a frame.
     let mut rest = bytes.strip_prefix(b"\xff\xd8")?;
@@ -174,23 +174,28 @@ fn measure(bytes: &[u8]) -> Option<(&'static str, [u32; 2])> {
             0xff => rest = &rest[1..],
             0xc0..=0xcf if !matches!(kind, 0xc4 | 0xc8 | 0xcc) => {
                 let side = |at: usize| Some(u32::from(u16::from_be_bytes(rest.get(at..at + 2)?.try_into().ok()?)));
-                return Some(("image/jpeg", [side(7)?, side(5)?]));
+                return Some((Kind::Jpeg, [side(7)?, side(5)?]));
             }
             _ => rest = rest.get(2 + usize::from(u16::from_be_bytes([high, low]))..)?,
         }
     }
 }
 
-/// Decodes a picture, as the only one of a document.
-fn decode(bytes: &[u8], kind: &str) -> Result<Data, String> {
-    let length = bytes.len();
-    let views =
-        format!("\"buffers\":[{{\"byteLength\":{length}}}],\"bufferViews\":[{{\"buffer\":0,\"byteLength\":{length}}}]");
-    let root = deserialize::from_str(&format!("{{\"asset\":{{\"version\":\"2.0\"}},{views}}}"));
-    let document = Document::from_json(root.map_err(|error| error.to_string())?).map_err(|error| error.to_string())?;
-    let view = document.views().next().ok_or("it has no bytes")?;
-    let source = Source::View { view, mime_type: kind };
-    Data::from_source(source, None, &[Buffer(bytes.to_vec())]).map_err(|error| error.to_string())
+/// The channels of all pixels, of 8 bits each, and how many of a pixel.
+type Pixels = (Vec<u8>, usize);
+
+fn of_png(bytes: &[u8]) -> Result<Pixels, png::DecodingError> {
+    let mut decoder = Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info()?;
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap_or_default()];
+    let frame = reader.next_frame(&mut pixels)?;
+    Ok((pixels, frame.color_type.samples()))
+}
+
+fn of_jpeg(bytes: &[u8]) -> Result<Pixels, zune_jpeg::errors::DecodeErrors> {
+    let options = DecoderOptions::default().jpeg_set_out_colorspace(ColorSpace::RGB);
+    Ok((JpegDecoder::new_with_options(ZCursor::new(bytes), options).decode()?, 3))
 }
 
 #[cfg(test)]
@@ -249,7 +254,7 @@ mod tests {
         let mut bytes = Vec::new();
         let encoder = jpeg_encoder::Encoder::new(&mut bytes, 95);
         encoder.encode(&[20, 160, 60].repeat(32 * 16), 32, 16, jpeg_encoder::ColorType::Rgb).unwrap();
-        assert_eq!(measure(&bytes), Some(("image/jpeg", [32, 16])));
+        assert_eq!(measure(&bytes), Some((Kind::Jpeg, [32, 16])));
         let picture = Picture::read(&bytes, Meaning::Color, "images[0]").unwrap();
         let [red, green, blue, alpha] = picture.over(LEFT, REPEAT);
         for (channel, expected) in [(red, 20), (green, 160), (blue, 60)] {

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, rc::Rc};
 
 use glam::{Mat4, Quat, Vec3};
-use gltf::json::{
+use gltf_json::{
     Index, Mesh, Node, Root, Scene,
     accessor::Accessor,
     mesh::{Mode, Primitive, Semantic},

@@ -3,7 +3,7 @@
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use cohabit_cdf::model::Material as Kind;
-use gltf::json::{Index, Material, Root, image::Image, material::AlphaMode, texture::Info, validation::Checked};
+use gltf_json::{Index, Material, Root, image::Image, material::AlphaMode, texture::Info, validation::Checked};
 
 use crate::{
     accessor::Accessors,
