@@ -391,10 +391,16 @@ impl ActionTable {
         &self.works
     }
 
+    /// The classes of a kind, in the order in which they are named.
+    #[must_use]
+    pub fn kind(&self, kind: &str) -> &[String] {
+        self.kinds.get(kind).map_or(&[], Vec::as_slice)
+    }
+
     /// Whether a class is of a kind.
     #[must_use]
     pub fn is_of_kind(&self, kind: &str, class: &str) -> bool {
-        self.kinds.get(kind).is_some_and(|classes| classes.iter().any(|one| one == class))
+        self.kind(kind).iter().any(|one| one == class)
     }
 
     /// Whether water runs in things of a class: what the term `basin` means.

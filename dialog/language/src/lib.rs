@@ -64,6 +64,7 @@ pub use say::oracle::Oracle;
 pub use stop::{Stop, find_stop, mentions_stop, said::Firmness};
 pub use talk::{
     conversation::Rewrite,
+    evidence::Evidence,
     interpret::{Consulting, Interpreted, Interpreter, Meant, Unclear},
     spoken::{SpokenNames, says_stop, says_stop_already},
 };
@@ -232,6 +233,12 @@ impl Language {
     #[must_use]
     pub fn referents(&self, utterance: &str, scene: &Known, context: &Context) -> Option<Referents> {
         self.conversation(scene).referents(utterance, context)
+    }
+
+    /// The ways to take an utterance by what its rewriter writes, with what speaks for each: what weights are fitted to.
+    #[must_use]
+    pub fn ways(&self, utterance: &str, scene: &Known, context: &Context) -> Vec<(String, Understanding, Evidence)> {
+        self.conversation(scene).all_ways(utterance, context)
     }
 
     fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {

@@ -8,6 +8,7 @@ mod chosen;
 mod condition;
 pub(crate) mod conversation;
 mod decide;
+pub(crate) mod evidence;
 mod faithful;
 mod heard;
 mod inquiry;

@@ -18,6 +18,12 @@ fn any_knife_cuts_and_any_basin_washes() {
 }
 
 #[test]
+fn rubbish_goes_into_a_bin_of_the_home() {
+    means(KITCHEN, &["throw away the tomato"], "take Tomato, open Pedal_Bin, put Pedal_Bin");
+    means(KITCHEN, &["throw the tomato on the kitchen island away"], "take Tomato, open Pedal_Bin, put Pedal_Bin");
+}
+
+#[test]
 fn machines_of_a_pack_are_switched_and_opened() {
     means(&["plan House_Family LivingRoom"], &["turn on the telly"], "toggle Television");
     means(&["plan House_Family UtilityRoom"], &["open the washing machine"], "open Washing_Machine");

@@ -6,7 +6,7 @@ use cohabit_language::{Language, Understanding};
 const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     (
         "sing that bowl a merry tune tonight",
-        &[("open the microwave", 0.3), ("open the microwave; put the bowl in the microwave", 0.25)],
+        &[("open the microwave", 0.5), ("open the microwave; put the bowl in the microwave", 0.45)],
     ),
     ("sing that plate a merry tune tonight", &[("pick up the plate", 0.1), ("turn on the toaster", 0.1)]),
     ("the plate, sing it a merry tune, I said", &[("pick up the plate", 0.15), ("turn on the toaster", 0.05)]),

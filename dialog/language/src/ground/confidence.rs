@@ -202,7 +202,7 @@ impl Weights {
 }
 
 /// The weights of these features, in their order.
-fn by_name<const N: usize>(weights: &BTreeMap<String, f32>, names: [&str; N]) -> [f32; N] {
+pub(crate) fn by_name<const N: usize>(weights: &BTreeMap<String, f32>, names: [&str; N]) -> [f32; N] {
     names.map(|name| *weights.get(name).expect("invariant: every feature has a weight, which a test holds"))
 }
 

@@ -57,6 +57,7 @@ pub(crate) struct Devices {
     worked: Vec<(ClassId, Vec<ClassId>)>,
     pub(crate) hammers: Vec<ClassId>,
     pub(crate) knives: Vec<ClassId>,
+    pub(crate) bins: Vec<ClassId>,
     /// What feeds and cuts circuits.
     pub(crate) levers: Vec<ClassId>,
     /// What machines turn other things into.
@@ -100,6 +101,7 @@ impl Devices {
             let classes = (0..).map(ClassId).zip(catalog.classes());
             classes.filter(|(id, class)| fits(*id, table.device(&class.id))).map(|(id, _)| id).collect()
         };
+        let of_kind = |kind: &str| of_class(&|class, _| table.is_of_kind(kind, &catalog.class(class).id));
         let has = |class: ClassId, property| catalog.class(class).has(property);
         let named: Vec<&str> = file.way.iter().filter_map(|way| way.work.as_deref()).collect();
         let feeds = |device: &Device| pressed(device).any(|change| matches!(change, Change::Feed(..)));
@@ -125,8 +127,9 @@ impl Devices {
                 .filter(|device| !device.worked_by.is_empty())
                 .flat_map(|device| known(&device.classes).into_iter().map(|class| (class, known(&device.worked_by))))
                 .collect(),
-            hammers: of_class(&|class, _| table.is_of_kind("hammer", &catalog.class(class).id)),
-            knives: of_class(&|class, _| table.is_of_kind("knife", &catalog.class(class).id)),
+            hammers: of_kind("hammer"),
+            knives: of_kind("knife"),
+            bins: known(table.kind("bin")),
             levers: of_class(&|_, device| feeds(device)),
             made: made.collect(),
             uses: Uses::new(catalog),

@@ -366,10 +366,23 @@ impl Planner<'_> {
         Ok(())
     }
 
+    /// `throw away the donut on the table`: where it lies; but what is thrown into another bin goes there.
+    pub(crate) fn add_discard(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let bin = settled.goal.as_ref().and_then(|goal| {
+            let Place::Object(phrase) = &goal.place else { return None };
+            let target = self.find_one(phrase, &Want::place(settled.intent, &[], None), Some(goal.role)).ok()?;
+            self.scene.object(target).filter(|known| self.devices.bins.contains(&known.class))
+        });
+        match bin {
+            Some(_) => self.add_throw(settled),
+            None => self.add_throw(&Settled { goal: None, ..settled.clone() }),
+        }
+    }
+
     fn throw_away(&mut self, object: ObjectId) -> Result<(), Fault> {
-        let bins: Vec<_> = ["TrashCan_01"].iter().filter_map(|id| self.catalog.find(id)).collect();
-        let Some(bin) = self.nearest(&bins) else {
-            return Err(self.need(&bins, format!("Tell me what to throw {} at.", self.the(object))));
+        let bins = &self.devices.bins;
+        let Some(bin) = self.nearest(bins) else {
+            return Err(self.need(bins, format!("Tell me what to throw {} at.", self.the(object))));
         };
         self.hold(object)?;
         self.place_on(bin);

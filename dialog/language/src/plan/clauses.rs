@@ -110,6 +110,7 @@ impl Planner<'_> {
             Intent::Place | Intent::Bring | Intent::Drop => self.add_place(&settled),
             Intent::Pour => self.add_pour(&settled),
             Intent::Throw => self.add_throw(&settled),
+            Intent::Discard => self.add_discard(&settled),
             Intent::Break | Intent::Cut => self.add_break(&settled),
             Intent::Open | Intent::Close => self.add_door(&settled),
             Intent::Toggle | Intent::TurnOn | Intent::TurnOff => self.add_toggle(&settled),

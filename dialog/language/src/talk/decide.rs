@@ -8,7 +8,14 @@ use crate::{
     read::tail,
     say::{ask, reply},
     stop,
-    talk::{conversation::Conversation, rewritten::WAITS, room_kind, way::Way, wording::Wording},
+    talk::{
+        conversation::Conversation,
+        evidence::{Evidence, Written},
+        rewritten::WAITS,
+        room_kind,
+        way::Way,
+        wording::Wording,
+    },
     understanding::{Asking, Clarification, Step, Understanding},
     words::token,
 };
@@ -86,7 +93,7 @@ impl Conversation<'_> {
         if reading == Reading::Sure {
             return by_grammar.taken(context);
         }
-        let mut ways = self.rewritten(&wording, context);
+        let mut ways = self.rewritten(&wording, context, Some(&by_grammar));
         if stop::denies_stop(utterance) {
             ways.retain(|way| !way.stops());
         }
@@ -142,6 +149,15 @@ impl Conversation<'_> {
             return (question, 0.0);
         }
         by_grammar.taken(context)
+    }
+
+    /// The ways to take an utterance by what the rewriter writes, with what speaks for each.
+    pub(crate) fn all_ways(&self, utterance: &str, context: &Context) -> Vec<(String, Understanding, Evidence)> {
+        let wording = self.wording(utterance);
+        let by_grammar = self.by_grammar(&wording, self.is_plain(&wording), context);
+        let Ok((sheet, evidence)) = self.sheet(&wording, context, Some(&by_grammar)) else { return Vec::new() };
+        let of = |(one, evidence): (Written, Evidence)| (one.text, one.way.understanding, evidence);
+        sheet.written.into_iter().zip(evidence).map(of).collect()
     }
 
     /// What is said to who stops what has been done already: that it can be undone.

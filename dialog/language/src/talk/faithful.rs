@@ -13,8 +13,6 @@ use crate::{
 
 /// Talk that asks for nothing; behind it stands of what kind it is, where that is known.
 pub(crate) const TALK: &str = "social";
-/// How likely what was said is meant the other way round, or a question is a request.
-const TURNED_ROUND: f32 = 0.2;
 /// What says that a question is about this room; the first is how a plain one says so.
 const HERE: [&str; 3] = ["in this room", "in here", "around here"];
 /// What is said of all of a kind.
@@ -23,6 +21,8 @@ const ALL: [&str; 3] = ["all", "every", "everything"];
 const OTHER: &str = "other";
 /// How what is around the robot says what is in a thing: `mug with coffee`.
 const HOLDING: &str = "with";
+/// What stands before what something is done with.
+const MEANS: [&str; 4] = ["in", "with", "on", "from"];
 /// Within so many words after `if` its `not` is said.
 const CLAUSE: usize = 6;
 
@@ -49,8 +49,10 @@ pub(crate) struct Source {
     rooms: Vec<RoomId>,
     /// What names things among the words that were said now, and which classes it may mean.
     things: Vec<(String, BTreeSet<ClassId>)>,
-    /// The classes that anything may mean that was said, now or before, or that is around.
-    classes: BTreeSet<ClassId>,
+    /// The classes that anything may mean that was said, now or before.
+    spoken: BTreeSet<ClassId>,
+    /// The same of what is around.
+    around: BTreeSet<ClassId>,
 }
 
 impl Source {
@@ -58,9 +60,10 @@ impl Source {
         let before: Vec<Vec<String>> = lines.iter().map(|(_, line)| lexicon.normalise(line).0).collect();
         let around_words = token::words(around);
         let things = things(lexicon, said);
-        let earlier = before.iter().chain([&around_words]).flat_map(|words| things_of(lexicon, words));
+        let earlier = before.iter().flat_map(|words| things_of(lexicon, words));
         Self {
-            classes: things.iter().flat_map(|(_, classes)| classes.iter().copied()).chain(earlier).collect(),
+            spoken: things.iter().flat_map(|(_, classes)| classes.iter().copied()).chain(earlier).collect(),
+            around: things_of(lexicon, &around_words).collect(),
             things,
             pairs: before.iter().flat_map(|line| pairs(line)).collect(),
             pairs_around: pairs(&around_words).collect(),
@@ -122,42 +125,103 @@ impl Conversation<'_> {
         kept.collect::<Vec<_>>().join(" ")
     }
 
-    /// Plain requests with the things that were named, where they name others of which nobody spoke and that are not around: who has read of
+    /// Plain requests with the thing that was said, where they name another one of which nobody spoke and that is not around: who has read of
     /// coffee pots alone takes a teapot for one.
     pub(crate) fn with_things_said(&self, text: &str, source: &Source) -> String {
-        let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
-        let mut unnamed = source.things.iter().filter(|(_, classes)| classes.is_disjoint(&named));
-        // Which of several is meant nobody knows.
-        let said = unnamed.next().map(|(said, _)| said.as_str()).filter(|_| unnamed.next().is_none());
-        let requests = text.split("; ").map(|request| self.with_thing_said(request, said, source));
+        let said = self.only_unnamed(text, source);
+        let requests = text.split("; ").map(|request| {
+            let request = self.without_unheard(request, source);
+            let renamed = said.and_then(|said| self.with_thing(&request, said, &|classes| is_nowhere(classes, source)));
+            renamed.unwrap_or(request)
+        });
         requests.collect::<Vec<_>>().join("; ")
     }
 
-    fn with_thing_said(&self, request: &str, said: Option<&str>, source: &Source) -> String {
-        let words: Vec<String> = request.split(' ').map(str::to_owned).collect();
-        let is_unheard = |word: &String| {
-            let is_fluid = self.lexicon.fluids.exact(std::slice::from_ref(word)).is_some();
-            let is_around = source.pairs_around.contains(&[HOLDING.to_owned(), word.clone()]);
+    /// The same where what they name first is around, but nobody spoke of it.
+    pub(crate) fn with_thing_swapped(&self, text: &str, source: &Source) -> Option<String> {
+        let said = self.only_unnamed(text, source)?;
+        let swapped = |request: &str| {
+            let words = token::words(request);
+            let (_, first) = things(self.lexicon, &words).into_iter().next()?;
+            let is_it = |classes: &BTreeSet<ClassId>| *classes == first && classes.is_disjoint(&source.spoken);
+            self.with_thing(request, said, &is_it)
+        };
+        let requests: Vec<&str> = text.split("; ").collect();
+        let (at, swapped) = requests.iter().enumerate().find_map(|(at, request)| Some((at, swapped(request)?)))?;
+        let all = requests.iter().enumerate().map(|(other, request)| if other == at { &swapped } else { *request });
+        Some(all.collect::<Vec<_>>().join("; "))
+    }
+
+    /// The one thing that was said and is not named; of several nobody knows which is meant.
+    fn only_unnamed<'s>(&self, text: &str, source: &'s Source) -> Option<&'s str> {
+        let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
+        let mut unnamed = source.things.iter().filter(|(_, classes)| classes.is_disjoint(&named));
+        unnamed.next().map(|(said, _)| said.as_str()).filter(|_| unnamed.next().is_none())
+    }
+
+    /// Plain requests without what they would be done with, where nobody spoke of that, and it is not around: `heat the milk in the microwave`, at
+    /// home.
+    pub(crate) fn without_means(&self, text: &str, source: &Source) -> String {
+        let is_nowhere = |words: &[String]| {
+            let (length, namings) = self.lexicon.classes.longest(words)?;
+            let is_there = |class| source.spoken.contains(class) || source.around.contains(class);
+            (length == words.len() && !namings.iter().any(|naming| is_there(&naming.class))).then_some(())
+        };
+        let without = |request: &str| {
+            let words: Vec<String> = request.split(' ').map(str::to_owned).collect();
+            let means = (2..words.len().saturating_sub(2)).find(|at| {
+                MEANS.contains(&words[*at].as_str()) && words[at + 1] == "the" && is_nowhere(&words[at + 2..]).is_some()
+            });
+            means.map_or_else(|| request.to_owned(), |at| words[..at].join(" "))
+        };
+        text.split("; ").map(without).collect::<Vec<_>>().join("; ")
+    }
+
+    /// How many things were said that plain requests do not name.
+    pub(crate) fn unnamed(&self, text: &str, source: &Source) -> usize {
+        let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
+        source.things.iter().filter(|(_, classes)| classes.is_disjoint(&named)).count()
+    }
+
+    /// How many things they name of which nobody spoke and that are not around.
+    pub(crate) fn invented(&self, text: &str, source: &Source) -> usize {
+        let named = things(self.lexicon, &token::words(text));
+        named.iter().filter(|(_, classes)| is_nowhere(classes, source)).count()
+    }
+
+    /// How many things they name of which nobody spoke.
+    pub(crate) fn unspoken(&self, text: &str, source: &Source) -> usize {
+        let named = things(self.lexicon, &token::words(text));
+        named.iter().filter(|(_, classes)| classes.is_disjoint(&source.spoken)).count()
+    }
+
+    /// `is it hot?`, where that was taken for the coffee that it mostly is of.
+    fn without_unheard(&self, request: &str, source: &Source) -> String {
+        let words: Vec<&str> = request.split(' ').collect();
+        let is_unheard = |word: &str| {
+            let is_fluid = self.lexicon.fluids.exact(&[word.to_owned()]).is_some();
+            let is_around = source.pairs_around.contains(&[HOLDING.to_owned(), word.to_owned()]);
             is_fluid && !source.words.contains(word) && !is_around
         };
-        // `is it hot?`, taken for the coffee that it mostly is of.
-        if request.ends_with('?')
-            && let Some(at) = words.windows(2).position(|pair| pair[0] == "the" && is_unheard(&pair[1]))
-        {
-            return [&words[..at], &["it".to_owned()], &words[at + 2..]].concat().join(" ");
+        let at = words.windows(2).position(|pair| pair[0] == "the" && is_unheard(pair[1]));
+        match at.filter(|_| request.ends_with('?')) {
+            Some(at) => [&words[..at], &["it"], &words[at + 2..]].concat().join(" "),
+            None => request.to_owned(),
         }
-        let Some(said) = said else { return request.to_owned() };
-        let bare = |word: &String| word.trim_end_matches('?').to_owned();
-        let plain: Vec<String> = words.iter().map(bare).collect();
-        for at in 0..plain.len() {
-            let Some((length, namings)) = self.lexicon.classes.longest(&plain[at..]) else { continue };
-            if namings.iter().all(|naming| !source.classes.contains(&naming.class)) {
-                let mark = if words[at + length - 1].ends_with('?') { "?" } else { "" };
-                let said = format!("{said}{mark}");
-                return [&words[..at], &[said], &words[at + length..]].concat().join(" ");
-            }
-        }
-        request.to_owned()
+    }
+
+    /// A plain request with another thing instead of the first that is such a one.
+    fn with_thing(&self, request: &str, thing: &str, is_it: &dyn Fn(&BTreeSet<ClassId>) -> bool) -> Option<String> {
+        let words: Vec<&str> = request.split(' ').collect();
+        let bare: Vec<String> = words.iter().map(|word| word.trim_end_matches('?').to_owned()).collect();
+        let found = (0..bare.len()).find_map(|at| {
+            let (length, namings) = self.lexicon.classes.longest(&bare[at..])?;
+            is_it(&namings.iter().map(|naming| naming.class).collect()).then_some((at, at + length))
+        });
+        let (at, end) = found?;
+        let mark = if words[end - 1].ends_with('?') { "?" } else { "" };
+        let thing = format!("{thing}{mark}");
+        Some([&words[..at], &[thing.as_str()], &words[end..]].concat().join(" "))
     }
 
     /// Plain requests of which those that count things do so in this room, where that was said.
@@ -174,8 +238,8 @@ impl Conversation<'_> {
         text.split("; ").map(here).collect::<Vec<_>>().join("; ")
     }
 
-    /// How likely it is what was said, by what its conditions deny, and by whether it asks what was asked.
-    pub(crate) fn faithfulness(&self, text: &str, source: &Source) -> f32 {
+    /// Whether it is rather not what was said, by what its conditions deny, and by whether it asks what was asked.
+    pub(crate) fn is_unfaithful(&self, text: &str, source: &Source) -> bool {
         let conditions: Vec<Vec<String>> = text
             .split("; ")
             .filter_map(|request| request.strip_prefix("if "))
@@ -195,13 +259,7 @@ impl Conversation<'_> {
         let loses = source.has_condition && text.split("; ").all(is_free);
         let adds = !source.has_denial && !denied.is_empty();
         let drops = source.is_denied && denied.is_empty() && claimed.iter().any(is_said);
-        let is_unfaithful = adds
-            || drops
-            || loses
-            || turns_to_deed
-            || self.lists_all(text, source)
-            || self.goes_elsewhere(text, source);
-        if is_unfaithful { TURNED_ROUND } else { 1.0 }
+        adds || drops || loses || turns_to_deed || self.lists_all(text, source) || self.goes_elsewhere(text, source)
     }
 
     /// Whether it goes to a room that nobody named: `go to Paris`.
@@ -241,6 +299,10 @@ fn things_of(lexicon: &Lexicon, words: &[String]) -> impl Iterator<Item = ClassI
     things(lexicon, words).into_iter().flat_map(|(_, classes)| classes)
 }
 
+fn is_nowhere(classes: &BTreeSet<ClassId>, source: &Source) -> bool {
+    classes.is_disjoint(&source.spoken) && classes.is_disjoint(&source.around)
+}
+
 /// The rooms that words name.
 fn rooms(lexicon: &Lexicon, words: &[String]) -> Vec<RoomId> {
     (0..words.len()).filter_map(|at| lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room)).collect()
@@ -249,6 +311,13 @@ fn rooms(lexicon: &Lexicon, words: &[String]) -> Vec<RoomId> {
 /// Each two words that stand beside each other.
 fn pairs(words: &[String]) -> impl Iterator<Item = [String; 2]> {
     words.windows(2).map(|pair| [pair[0].clone(), pair[1].clone()])
+}
+
+/// The share of the words that were said now which plain requests have, too.
+pub(crate) fn covered(text: &str, source: &Source) -> f32 {
+    let written: BTreeSet<String> = token::words(text).into_iter().collect();
+    let said = || source.said.iter().filter(|word| !token::is_punctuation(word));
+    said().filter(|word| written.contains(*word)).count() as f32 / said().count().max(1) as f32
 }
 
 /// Whether it is talk that asks for nothing.

@@ -5,7 +5,7 @@ use cohabit_cdf::{Action, Color, Fluid, GoToTarget, ObjectId, Property, StateFla
 use crate::{
     context::Context,
     known::{Known, KnownObject, imagine},
-    talk::{conversation::Conversation, way::Way, wording::Wording},
+    talk::{conversation::Conversation, evidence::Written, way::Way, wording::Wording},
     understanding::Step,
 };
 
@@ -14,34 +14,45 @@ use crate::{
 const ASKED_ABOUT: f32 = 4.0;
 const FOR_NEXT_GOAL: f32 = 3.0;
 const FOR_LATER_GOAL: f32 = 1.5;
-/// The same of one that does what is so already, and of one that goes to a room and acts in another.
-const IN_VAIN: f32 = 0.3;
-const ASTRAY: f32 = 0.5;
+/// The same of one that turns round what was said. By judgement, too: few labelled utterances deny anything.
+const UNFAITHFUL: f32 = 0.2;
+
+/// What becomes of the scene by a way.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Outcome {
+    /// It does what is so already.
+    InVain,
+    /// It goes to a room and acts in another.
+    Astray,
+    /// Anything else.
+    Usual,
+}
 
 impl Conversation<'_> {
-    /// Gives ways their probability in the light of what is open.
-    pub(crate) fn weigh(&self, ways: &mut [Way], wording: &Wording<'_>, context: &Context) {
+    /// What becomes of the scene by a way.
+    pub(crate) fn becomes(&self, way: &Way) -> Outcome {
+        match way.steps() {
+            None if way.context.is_met => Outcome::InVain,
+            Some(steps) if self.is_in_vain(steps) => Outcome::InVain,
+            Some(steps) if self.goes_astray(steps) => Outcome::Astray,
+            _ => Outcome::Usual,
+        }
+    }
+
+    /// How many times likelier each way is in the light of what is open, and of what was denied.
+    pub(crate) fn prior(&self, written: &[Written], wording: &Wording<'_>, context: &Context) -> Vec<f32> {
         // Who forbids something may well mean what is open.
         let is_denied = self.lexicon.negation.occurs_in(&wording.words);
-        let goals: Vec<Way> = if is_denied { Vec::new() } else { self.goals_as_ways(context) };
-        let unknown = 1.0 - ways.iter().map(|way| way.probability).sum::<f32>().min(1.0);
-        for way in ways.iter_mut() {
-            let for_goal = match goals.iter().position(|goal| way.leads_to(goal)) {
-                Some(0) => FOR_NEXT_GOAL,
-                Some(_) => FOR_LATER_GOAL,
-                None => 1.0,
-            };
-            way.probability *= match way.steps() {
-                None if way.context.is_met => IN_VAIN,
-                Some(steps) if self.is_in_vain(steps) => IN_VAIN,
-                Some(steps) if self.goes_astray(steps) => ASTRAY,
-                _ if is_denied => 1.0,
-                _ if way.is_asked_about(context) => ASKED_ABOUT,
-                _ => for_goal,
-            };
-        }
-        let all = unknown + ways.iter().map(|way| way.probability).sum::<f32>();
-        ways.iter_mut().for_each(|way| way.probability /= all);
+        let goals = if is_denied { Vec::new() } else { self.goals_as_ways(context) };
+        let for_goal = |way: &Way| match goals.iter().position(|goal| way.leads_to(goal)) {
+            _ if is_denied || self.becomes(way) != Outcome::Usual => 1.0,
+            _ if way.is_asked_about(context) => ASKED_ABOUT,
+            Some(0) => FOR_NEXT_GOAL,
+            Some(_) => FOR_LATER_GOAL,
+            None => 1.0,
+        };
+        let of = |one: &Written| for_goal(&one.way) * if one.is_unfaithful { UNFAITHFUL } else { 1.0 };
+        written.iter().map(of).collect()
     }
 
     /// Whether a step leaves what it works on as it is: cereal is poured into a bowl of cereal; or things are taken and put, and in the

@@ -11,6 +11,7 @@ use crate::{
     talk::{
         cache::Cache,
         conversation::Conversation,
+        evidence::{self, Edit, Evidence, Sheet, Written},
         faithful::{Source, TALK, is_talk},
         way::Way,
         wording::Wording,
@@ -19,10 +20,10 @@ use crate::{
     words::{lexicon::StateWord, token},
 };
 
-/// How likely the others are at most where the grammar does not read the likeliest: enough to be proposed.
+/// How likely ways are at most where the grammar does not read the likeliest: enough to be proposed.
 const DOUBTFUL: f32 = 0.4;
-/// How likely a rewriting is that names something of which nobody spoke, once that is what was named.
-const RENAMED: f32 = 0.5;
+/// What a rewriter writes of what nobody could tell the meaning of.
+const CANNOT_TELL: &str = "?";
 /// How likely it is at least that something is asked for beside a stop.
 const LIKELY: f32 = 0.3;
 /// What is said to talk of no known kind.
@@ -33,43 +34,69 @@ pub(crate) const WAITS: &str = "OK, I wait. Tell me when to go on.";
 
 impl Conversation<'_> {
     /// What the rewriter takes an utterance for, the likeliest first; nothing, where the likeliest names something that nobody
-    /// knows: others are mere guesses then.
-    pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context) -> Vec<Way> {
-        let (mut ways, mut is_doubtful, mut unread) = (Vec::<Way>::new(), false, 0.0);
-        let around = self.around();
-        let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
-        for (at, (text, probability)) in self.with_question(wording.utterance, context, &around).iter().enumerate() {
-            let kept = self.with_things_said(text, &source);
-            let probability = if kept == *text { *probability } else { probability * RENAMED };
-            let text = &self.with_this_room(&self.without_invention(&kept, &source), &source);
-            let probability = probability * self.faithfulness(text, &source);
-            let way = match self.of_rewriting(text, probability, wording, context) {
-                Some(way) => way,
-                None if at == 0 && self.names_unknown(text) => {
-                    return self.asked_about(text, probability, context).into_iter().collect();
-                }
-                None => {
-                    is_doubtful |= at == 0;
-                    unread += probability;
-                    continue;
-                }
-            };
-            match ways.iter_mut().find(|other| other.is_same(&way)) {
-                Some(other) => other.probability += way.probability,
-                None => ways.push(way),
-            }
-        }
-        self.weigh(&mut ways, wording, context);
-        // Others may have said it otherwise: how likely one is meant follows more from its share of what is written, and only by its fourth root
-        // from how likely that is, by writers that it was not fitted to.
-        let most = if is_doubtful { DOUBTFUL } else { 1.0 };
-        let all = ways.iter().map(|way| way.probability).sum::<f32>() + unread;
-        for way in &mut ways {
-            let share = way.probability / all.max(f32::MIN_POSITIVE);
-            way.probability = (way.probability * share.powi(3)).sqrt().sqrt().min(most);
-        }
+    /// knows: others are mere guesses then. What the grammar takes it for is likelier.
+    pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context, by_grammar: Option<&Way>) -> Vec<Way> {
+        let (sheet, evidence) = match self.sheet(wording, context, by_grammar) {
+            Ok(sheet) => sheet,
+            Err(asked) => return asked.map(|way| *way).into_iter().collect(),
+        };
+        let prior = self.prior(&sheet.written, wording, context);
+        let utilities: Vec<f32> = evidence.iter().zip(prior).map(|(one, prior)| one.utility() + prior.ln()).collect();
+        let most = if sheet.is_first_unread { DOUBTFUL } else { 1.0 };
+        let weighed = |(one, share): (Written, f32)| Way { probability: share.min(most), ..one.way };
+        let mut ways: Vec<Way> =
+            sheet.written.into_iter().zip(evidence::probabilities(&utilities)).map(weighed).collect();
         ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));
         ways
+    }
+
+    /// All that the rewriter writes of an utterance, with what speaks for each way to take it; or what the robot asks, where the likeliest names
+    /// something that nobody knows.
+    pub(crate) fn sheet(
+        &self,
+        wording: &Wording<'_>,
+        context: &Context,
+        by_grammar: Option<&Way>,
+    ) -> Result<(Sheet, Vec<Evidence>), Option<Box<Way>>> {
+        let around = self.around();
+        let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
+        let rewritings = self.with_question(wording.utterance, context, &around);
+        let all = rewritings.iter().map(|(_, probability)| probability).sum::<f32>().max(f32::MIN_POSITIVE);
+        let mut sheet = Sheet { written: Vec::new(), all, is_first_unread: false };
+        for (at, (text, probability)) in rewritings.iter().enumerate() {
+            for (nth, (edit, text)) in self.edited(text, &source).into_iter().enumerate() {
+                let is_likeliest = at == 0 && nth == 0;
+                let Some(way) = self.of_rewriting(&text, *probability, wording, context) else {
+                    if is_likeliest && self.names_unknown(&text) {
+                        return Err(self.asked_about(&text, *probability, context).map(Box::new));
+                    }
+                    sheet.is_first_unread |= is_likeliest;
+                    continue;
+                };
+                match sheet.written.iter_mut().find(|other| other.way.is_same(&way)) {
+                    Some(other) if nth == 0 => other.probability += probability,
+                    Some(_) => {}
+                    None => {
+                        let is_unfaithful = self.is_unfaithful(&text, &source);
+                        sheet.written.push(Written { way, text, probability: *probability, edit, is_unfaithful });
+                    }
+                }
+            }
+        }
+        sheet.written.sort_by(|one, other| other.probability.total_cmp(&one.probability));
+        let evidence = self.evidence(&sheet, &source, by_grammar);
+        Ok((sheet, evidence))
+    }
+
+    /// What the rewriter wrote, without what it cannot know, and what else may be meant by that.
+    fn edited(&self, text: &str, source: &Source) -> Vec<(Edit, String)> {
+        let known = |text: &str| self.with_this_room(&self.without_invention(text, source), source);
+        let renamed = self.with_things_said(text, source);
+        let first = (if renamed == text { Edit::Kept } else { Edit::Renamed }, known(&renamed));
+        let swapped = self.with_thing_swapped(text, source).map(|text| (Edit::Swapped, known(&text)));
+        let without_means = (Edit::WithoutMeans, self.without_means(&first.1, source));
+        let others = swapped.into_iter().chain([without_means]).filter(|(_, text)| *text != first.1);
+        std::iter::once(first.clone()).chain(others).collect()
     }
 
     /// What the rewriter makes of an utterance; where that is talk alone, and a question stands in it, what it makes of the question.
@@ -84,7 +111,7 @@ impl Conversation<'_> {
     /// Whether it is rather a request or a question than anything else.
     pub(crate) fn is_rewritten_as_request(&self, utterance: &str, context: &Context) -> bool {
         let all = self.rewritings(utterance, context, &self.around());
-        let asks = |text: &str| !asks_nothing(text) && !matches!(asking(text).as_str(), "?" | "stop" | "wait");
+        let asks = |text: &str| !asks_nothing(text) && !matches!(asking(text).as_str(), CANNOT_TELL | "stop" | "wait");
         let asked: f32 = all.iter().filter(|(text, _)| asks(text)).map(|(_, probability)| probability).sum();
         let rest: f32 = all.iter().filter(|(text, _)| !asks(text)).map(|(_, probability)| probability).sum();
         asked > rest.max(LIKELY)
@@ -109,7 +136,7 @@ impl Conversation<'_> {
     fn of_rewriting(&self, text: &str, probability: f32, wording: &Wording<'_>, context: &Context) -> Option<Way> {
         let mut then = context.at_new_utterance();
         let understanding = match asking(text).as_str() {
-            "?" => return None,
+            CANNOT_TELL => return None,
             "none" => Understanding::answer(AGREED),
             talk if is_talk(talk) => self.reply_to_talk(talk, wording),
             "stop" => self.stopped("", &mut then),
@@ -198,7 +225,7 @@ fn asking(text: &str) -> String {
 }
 
 /// Whether a rewriting is talk alone, or nothing to a robot.
-fn asks_nothing(text: &str) -> bool {
+pub(crate) fn asks_nothing(text: &str) -> bool {
     text.split("; ").all(|request| request == "none" || is_talk(request))
 }
 

@@ -77,7 +77,7 @@ impl Conversation<'_> {
         if stop.is_all || context.is_busy() || context.pending.is_some() || context.awaits() {
             return None;
         }
-        let ways = self.rewritten(&self.wording(utterance), context);
+        let ways = self.rewritten(&self.wording(utterance), context, None);
         if ways.first().is_none_or(Way::stops) {
             return None;
         }

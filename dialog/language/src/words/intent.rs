@@ -35,6 +35,7 @@ pub(crate) enum Intent {
     /// To look at what lies under it or behind it.
     LookUnder,
     Throw,
+    Discard,
     Highlight,
     Heat,
     Cool,
@@ -115,6 +116,7 @@ impl Intent {
                 | Self::Fill
                 | Self::Clean
                 | Self::Throw
+                | Self::Discard
                 | Self::Heat
                 | Self::Cool
                 | Self::Repair
@@ -134,6 +136,7 @@ impl Intent {
             Self::Break
                 | Self::Cut
                 | Self::Throw
+                | Self::Discard
                 | Self::Pour
                 | Self::Fill
                 | Self::Clean
@@ -178,6 +181,7 @@ impl Intent {
             Self::LookIn => "look in",
             Self::LookUnder => "look under",
             Self::Throw => "throw",
+            Self::Discard => "throw away",
             Self::Highlight => "show",
             Self::Heat => "heat",
             Self::Cool => "cool",
