@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import uuid
 from collections.abc import Iterator
@@ -16,10 +16,8 @@ import pytest
 
 @contextlib.contextmanager
 def playing(*arguments: str) -> Iterator[str]:
-    """The name of a session with those arguments, run by the binary that ``COHABIT`` names."""
-    binary = os.environ.get("COHABIT")
-    if not binary:
-        pytest.skip("COHABIT does not name the binary `cohabit`: no session can be started")
+    """The name of a session with those arguments, run by the program that was installed along."""
+    binary = str(pathlib.Path(sys.executable).with_name("cohabit"))
     name = f"py-{uuid.uuid4().hex[:12]}"
     with tempfile.TemporaryDirectory() as folder:
         log = str(pathlib.Path(folder) / "session.mcap")
