@@ -194,16 +194,21 @@ impl Weights {
     pub(crate) fn probabilities(&self, candidates: &[Features], doubt: &Doubt) -> (Vec<f32>, f32) {
         let none = if candidates.is_empty() { 1.0 } else { 1.0 / (1.0 + (-product(&self.none, &doubt.values)).exp()) };
         let utilities: Vec<f32> = candidates.iter().map(|one| product(&self.candidate, &one.values)).collect();
-        let highest = utilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
-        let whole = parts.iter().sum::<f32>() / (1.0 - none);
-        (parts.iter().map(|part| part / whole).collect(), none)
+        (softmax(&utilities).into_iter().map(|share| share * (1.0 - none)).collect(), none)
     }
 }
 
 /// The weights of these features, in their order.
 pub(crate) fn by_name<const N: usize>(weights: &BTreeMap<String, f32>, names: [&str; N]) -> [f32; N] {
     names.map(|name| *weights.get(name).expect("invariant: every feature has a weight, which a test holds"))
+}
+
+/// The shares of alternatives of these utilities.
+pub(crate) fn softmax(utilities: &[f32]) -> Vec<f32> {
+    let highest = utilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
+    let whole: f32 = parts.iter().sum();
+    parts.iter().map(|part| part / whole).collect()
 }
 
 pub(crate) fn product(weights: &[f32], values: &[f32]) -> f32 {

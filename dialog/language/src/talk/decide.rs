@@ -10,7 +10,7 @@ use crate::{
     stop,
     talk::{
         conversation::Conversation,
-        evidence::{Evidence, Written},
+        evidence::{Evidence, Hypothesis},
         rewritten::WAITS,
         room_kind,
         way::Way,
@@ -155,9 +155,9 @@ impl Conversation<'_> {
     pub(crate) fn all_ways(&self, utterance: &str, context: &Context) -> Vec<(String, Understanding, Evidence)> {
         let wording = self.wording(utterance);
         let by_grammar = self.by_grammar(&wording, self.is_plain(&wording), context);
-        let Ok((sheet, evidence)) = self.sheet(&wording, context, Some(&by_grammar)) else { return Vec::new() };
-        let of = |(one, evidence): (Written, Evidence)| (one.text, one.way.understanding, evidence);
-        sheet.written.into_iter().zip(evidence).map(of).collect()
+        let Ok((n_best, evidence)) = self.n_best(&wording, context, Some(&by_grammar)) else { return Vec::new() };
+        let of = |(one, evidence): (Hypothesis, Evidence)| (one.text, one.way.understanding, evidence);
+        n_best.hypotheses.into_iter().zip(evidence).map(of).collect()
     }
 
     /// What is said to who stops what has been done already: that it can be undone.

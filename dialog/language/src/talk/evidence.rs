@@ -7,7 +7,7 @@
 use std::{collections::BTreeMap, sync::LazyLock};
 
 use crate::{
-    ground::confidence::{by_name, product},
+    ground::confidence::{by_name, product, softmax},
     talk::{
         conversation::Conversation,
         faithful::{Source, covered},
@@ -17,13 +17,14 @@ use crate::{
     understanding::{Clarification, Understanding},
 };
 
-/// What a rewriter wrote, and what comes of it.
-pub(crate) struct Written {
+/// A way to take an utterance, by what a rewriter wrote.
+pub(crate) struct Hypothesis {
     pub(crate) way: Way,
     /// As it was read, and how likely it is by the rewriter, with all that come to the same.
     pub(crate) text: String,
     pub(crate) probability: f32,
     pub(crate) edit: Edit,
+    pub(crate) outcome: Outcome,
     pub(crate) is_unfaithful: bool,
 }
 
@@ -40,11 +41,11 @@ pub(crate) enum Edit {
     WithoutMeans,
 }
 
-/// All that was written.
-pub(crate) struct Sheet {
-    /// What is read, the likeliest first.
-    pub(crate) written: Vec<Written>,
-    /// How likely all is together.
+/// The n-best list of a rewriter.
+pub(crate) struct NBest {
+    /// What the grammar reads of it, the likeliest first.
+    pub(crate) hypotheses: Vec<Hypothesis>,
+    /// How likely all that was written is together.
     pub(crate) all: f32,
     /// Whether the grammar does not read what is likeliest.
     pub(crate) is_first_unread: bool,
@@ -93,23 +94,22 @@ const FAINTEST: f32 = -12.0;
 
 impl Conversation<'_> {
     /// What speaks for each of the ways.
-    pub(crate) fn evidence(&self, sheet: &Sheet, source: &Source, by_grammar: Option<&Way>) -> Vec<Evidence> {
+    pub(crate) fn evidence(&self, n_best: &NBest, source: &Source, by_grammar: Option<&Way>) -> Vec<Evidence> {
         let is = |holds: bool| f32::from(u8::from(holds));
         let few = |count: usize| count.min(3) as f32;
         let log = |share: f32| share.max(f32::MIN_POSITIVE).ln().max(FAINTEST);
-        let of = |Written { way, text, probability, edit, .. }: &Written| {
-            let becomes = self.becomes(way);
+        let of = |Hypothesis { way, text, probability, edit, outcome, .. }: &Hypothesis| {
             let asks =
                 matches!(&way.understanding, Understanding::Question { kind, .. } if *kind != Clarification::Reference);
             let values = [
                 1.0,
                 log(*probability),
-                log(probability / sheet.all),
+                log(probability / n_best.all),
                 is(*edit == Edit::Renamed),
                 is(*edit == Edit::Swapped),
                 is(*edit == Edit::WithoutMeans),
-                is(becomes == Outcome::InVain),
-                is(becomes == Outcome::Astray),
+                is(*outcome == Outcome::InVain),
+                is(*outcome == Outcome::Astray),
                 is(asks),
                 few(self.unnamed(text, source)),
                 few(self.unspoken(text, source)),
@@ -119,7 +119,7 @@ impl Conversation<'_> {
             ];
             Evidence { values }
         };
-        sheet.written.iter().map(of).collect()
+        n_best.hypotheses.iter().map(of).collect()
     }
 }
 
@@ -140,10 +140,9 @@ fn weights() -> [f32; Evidence::COUNT] {
 
 /// The probabilities of ways of these utilities, where none of them has a utility of 0.
 pub(crate) fn probabilities(utilities: &[f32]) -> Vec<f32> {
-    let highest = utilities.iter().copied().fold(0.0, f32::max);
-    let parts: Vec<f32> = utilities.iter().map(|utility| (utility - highest).exp()).collect();
-    let whole = (-highest).exp() + parts.iter().sum::<f32>();
-    parts.iter().map(|part| part / whole).collect()
+    let mut shares = softmax(&[utilities, &[0.0]].concat());
+    shares.pop();
+    shares
 }
 
 #[cfg(test)]

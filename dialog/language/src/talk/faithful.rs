@@ -8,7 +8,11 @@ use cohabit_cdf::{ClassId, ObjectClass, Property, RoomId};
 use crate::{
     read::{question, whether},
     talk::{condition, conversation::Conversation},
-    words::{lexicon::Lexicon, question_kind::QuestionKind, token},
+    words::{
+        lexicon::{Lexicon, Naming},
+        question_kind::QuestionKind,
+        token,
+    },
 };
 
 /// Talk that asks for nothing; behind it stands of what kind it is, where that is known.
@@ -162,15 +166,15 @@ impl Conversation<'_> {
     /// Plain requests without what they would be done with, where nobody spoke of that, and it is not around: `heat the milk in the microwave`, at
     /// home.
     pub(crate) fn without_means(&self, text: &str, source: &Source) -> String {
-        let is_nowhere = |words: &[String]| {
-            let (length, namings) = self.lexicon.classes.longest(words)?;
-            let is_there = |class| source.spoken.contains(class) || source.around.contains(class);
-            (length == words.len() && !namings.iter().any(|naming| is_there(&naming.class))).then_some(())
+        let names_absent = |words: &[String]| {
+            let named = self.lexicon.classes.longest(words).filter(|(length, _)| *length == words.len());
+            let classes = |namings: &[Naming]| namings.iter().map(|naming| naming.class).collect();
+            named.is_some_and(|(_, namings)| is_nowhere(&classes(namings), source))
         };
         let without = |request: &str| {
             let words: Vec<String> = request.split(' ').map(str::to_owned).collect();
             let means = (2..words.len().saturating_sub(2)).find(|at| {
-                MEANS.contains(&words[*at].as_str()) && words[at + 1] == "the" && is_nowhere(&words[at + 2..]).is_some()
+                MEANS.contains(&words[*at].as_str()) && words[at + 1] == "the" && names_absent(&words[at + 2..])
             });
             means.map_or_else(|| request.to_owned(), |at| words[..at].join(" "))
         };

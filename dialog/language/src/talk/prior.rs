@@ -5,7 +5,7 @@ use cohabit_cdf::{Action, Color, Fluid, GoToTarget, ObjectId, Property, StateFla
 use crate::{
     context::Context,
     known::{Known, KnownObject, imagine},
-    talk::{conversation::Conversation, evidence::Written, way::Way, wording::Wording},
+    talk::{conversation::Conversation, evidence::Hypothesis, way::Way, wording::Wording},
     understanding::Step,
 };
 
@@ -40,19 +40,19 @@ impl Conversation<'_> {
     }
 
     /// How many times likelier each way is in the light of what is open, and of what was denied.
-    pub(crate) fn prior(&self, written: &[Written], wording: &Wording<'_>, context: &Context) -> Vec<f32> {
+    pub(crate) fn prior(&self, hypotheses: &[Hypothesis], wording: &Wording<'_>, context: &Context) -> Vec<f32> {
         // Who forbids something may well mean what is open.
         let is_denied = self.lexicon.negation.occurs_in(&wording.words);
         let goals = if is_denied { Vec::new() } else { self.goals_as_ways(context) };
-        let for_goal = |way: &Way| match goals.iter().position(|goal| way.leads_to(goal)) {
-            _ if is_denied || self.becomes(way) != Outcome::Usual => 1.0,
-            _ if way.is_asked_about(context) => ASKED_ABOUT,
+        let for_goal = |one: &Hypothesis| match goals.iter().position(|goal| one.way.leads_to(goal)) {
+            _ if is_denied || one.outcome != Outcome::Usual => 1.0,
+            _ if one.way.is_asked_about(context) => ASKED_ABOUT,
             Some(0) => FOR_NEXT_GOAL,
             Some(_) => FOR_LATER_GOAL,
             None => 1.0,
         };
-        let of = |one: &Written| for_goal(&one.way) * if one.is_unfaithful { UNFAITHFUL } else { 1.0 };
-        written.iter().map(of).collect()
+        let of = |one: &Hypothesis| for_goal(one) * if one.is_unfaithful { UNFAITHFUL } else { 1.0 };
+        hypotheses.iter().map(of).collect()
     }
 
     /// Whether a step leaves what it works on as it is: cereal is poured into a bowl of cereal; or things are taken and put, and in the

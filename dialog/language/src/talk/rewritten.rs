@@ -11,7 +11,7 @@ use crate::{
     talk::{
         cache::Cache,
         conversation::Conversation,
-        evidence::{self, Edit, Evidence, Sheet, Written},
+        evidence::{self, Edit, Evidence, Hypothesis, NBest},
         faithful::{Source, TALK, is_talk},
         way::Way,
         wording::Wording,
@@ -36,33 +36,33 @@ impl Conversation<'_> {
     /// What the rewriter takes an utterance for, the likeliest first; nothing, where the likeliest names something that nobody
     /// knows: others are mere guesses then. What the grammar takes it for is likelier.
     pub(crate) fn rewritten(&self, wording: &Wording<'_>, context: &Context, by_grammar: Option<&Way>) -> Vec<Way> {
-        let (sheet, evidence) = match self.sheet(wording, context, by_grammar) {
-            Ok(sheet) => sheet,
+        let (n_best, evidence) = match self.n_best(wording, context, by_grammar) {
+            Ok(n_best) => n_best,
             Err(asked) => return asked.map(|way| *way).into_iter().collect(),
         };
-        let prior = self.prior(&sheet.written, wording, context);
+        let prior = self.prior(&n_best.hypotheses, wording, context);
         let utilities: Vec<f32> = evidence.iter().zip(prior).map(|(one, prior)| one.utility() + prior.ln()).collect();
-        let most = if sheet.is_first_unread { DOUBTFUL } else { 1.0 };
-        let weighed = |(one, share): (Written, f32)| Way { probability: share.min(most), ..one.way };
+        let most = if n_best.is_first_unread { DOUBTFUL } else { 1.0 };
+        let weighed = |(one, share): (Hypothesis, f32)| Way { probability: share.min(most), ..one.way };
         let mut ways: Vec<Way> =
-            sheet.written.into_iter().zip(evidence::probabilities(&utilities)).map(weighed).collect();
+            n_best.hypotheses.into_iter().zip(evidence::probabilities(&utilities)).map(weighed).collect();
         ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));
         ways
     }
 
     /// All that the rewriter writes of an utterance, with what speaks for each way to take it; or what the robot asks, where the likeliest names
     /// something that nobody knows.
-    pub(crate) fn sheet(
+    pub(crate) fn n_best(
         &self,
         wording: &Wording<'_>,
         context: &Context,
         by_grammar: Option<&Way>,
-    ) -> Result<(Sheet, Vec<Evidence>), Option<Box<Way>>> {
+    ) -> Result<(NBest, Vec<Evidence>), Option<Box<Way>>> {
         let around = self.around();
         let source = Source::new(self.lexicon, &wording.words, context.lines(), &around);
         let rewritings = self.with_question(wording.utterance, context, &around);
         let all = rewritings.iter().map(|(_, probability)| probability).sum::<f32>().max(f32::MIN_POSITIVE);
-        let mut sheet = Sheet { written: Vec::new(), all, is_first_unread: false };
+        let mut n_best = NBest { hypotheses: Vec::new(), all, is_first_unread: false };
         for (at, (text, probability)) in rewritings.iter().enumerate() {
             for (nth, (edit, text)) in self.edited(text, &source).into_iter().enumerate() {
                 let is_likeliest = at == 0 && nth == 0;
@@ -70,22 +70,30 @@ impl Conversation<'_> {
                     if is_likeliest && self.names_unknown(&text) {
                         return Err(self.asked_about(&text, *probability, context).map(Box::new));
                     }
-                    sheet.is_first_unread |= is_likeliest;
+                    n_best.is_first_unread |= is_likeliest;
                     continue;
                 };
-                match sheet.written.iter_mut().find(|other| other.way.is_same(&way)) {
+                match n_best.hypotheses.iter_mut().find(|other| other.way.is_same(&way)) {
                     Some(other) if nth == 0 => other.probability += probability,
                     Some(_) => {}
                     None => {
                         let is_unfaithful = self.is_unfaithful(&text, &source);
-                        sheet.written.push(Written { way, text, probability: *probability, edit, is_unfaithful });
+                        let outcome = self.becomes(&way);
+                        n_best.hypotheses.push(Hypothesis {
+                            way,
+                            text,
+                            probability: *probability,
+                            edit,
+                            outcome,
+                            is_unfaithful,
+                        });
                     }
                 }
             }
         }
-        sheet.written.sort_by(|one, other| other.probability.total_cmp(&one.probability));
-        let evidence = self.evidence(&sheet, &source, by_grammar);
-        Ok((sheet, evidence))
+        n_best.hypotheses.sort_by(|one, other| other.probability.total_cmp(&one.probability));
+        let evidence = self.evidence(&n_best, &source, by_grammar);
+        Ok((n_best, evidence))
     }
 
     /// What the rewriter wrote, without what it cannot know, and what else may be meant by that.
@@ -225,7 +233,7 @@ fn asking(text: &str) -> String {
 }
 
 /// Whether a rewriting is talk alone, or nothing to a robot.
-pub(crate) fn asks_nothing(text: &str) -> bool {
+fn asks_nothing(text: &str) -> bool {
     text.split("; ").all(|request| request == "none" || is_talk(request))
 }
 

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The sets of `dialog/language/tests/utterances/writers` that are named have to be such as the rewriter has not read (`UNSEEN` in
-//! `dialog/rewriter/train/fit.py`): it is surer of what it has. Each set is judged by weights that are fitted to the others.
+//! `dialog/rewriter/train/fit.py`): it is surer of what it has. A sixth of the sets at a time is judged by weights that are
+//! fitted to the others.
 
 #[path = "../all_cores.rs"]
 mod all_cores;
@@ -38,7 +39,11 @@ struct Ways {
 
 fn main() {
     let named: Vec<String> = std::env::args().skip(1).collect();
-    assert!(!named.is_empty(), "name sets that the rewriter has not read: {}", sets::folder("../tests/utterances/writers").display());
+    assert!(
+        !named.is_empty(),
+        "name sets that the rewriter has not read: {}",
+        sets::folder("../tests/utterances/writers").display()
+    );
     let sets = sets::read("../tests/utterances/writers", &named);
     let sets: Vec<Vec<Ways>> =
         sets.iter().map(|(_, text)| all_cores::filter_map(&cases::cases(text), Ways::new)).collect();
@@ -56,9 +61,14 @@ fn main() {
     }
     let first = sets.iter().flatten().filter(|ways| ways.right[0]).count();
     let any = sets.iter().flatten().filter(|ways| ways.right.contains(&true)).count();
-    println!("of {}: likeliest by the rewriter {first}, by these weights {:.0}, any {any}", said.len(), judged.accuracy * said.len() as f64);
+    println!(
+        "of {}: likeliest by the rewriter {first}, by these weights {:.0}, any {any}",
+        said.len(),
+        judged.accuracy * said.len() as f64
+    );
     let weights = fitted(sets.iter().flatten());
-    fs::write(sets::folder("../data/ways.toml"), file(&weights, &named, said.len(), &judged)).expect("the weights can be written");
+    fs::write(sets::folder("../data/ways.toml"), file(&weights, &named, said.len(), &judged))
+        .expect("the weights can be written");
 }
 
 impl Ways {
