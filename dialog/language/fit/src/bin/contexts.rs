@@ -5,7 +5,8 @@
 //! cargo run --release --manifest-path dialog/language/fit/Cargo.toml --bin contexts
 //! ```
 //!
-//! It writes `contexts/SET.jsonl` for each set of `dialog/language/tests/utterances/writers`, or for those that are named, an utterance a line.
+//! It writes `contexts/SET.jsonl` for each set of `dialog/language/tests/utterances/writers`, or for those that are named, an utterance a line, and
+//! prints the labels that the grammar makes nothing of: what is wrong in them, or missing in it.
 
 #[path = "../all_cores.rs"]
 mod all_cores;
@@ -39,6 +40,9 @@ fn context(case: &Case<'_>) -> Option<serde_json::Value> {
     // What the grammar makes nothing of is learnt only where there is nothing else.
     let (read, unread): (Vec<&str>, Vec<&str>) =
         case.expected.iter().partition(|label| cases::Wanted::new(label, &talk).is_some());
+    if read.is_empty() {
+        println!("the grammar reads none of: {}", unread.join(" || "));
+    }
     let meant = if read.is_empty() { unread } else { read };
     let around = talk.language.surroundings(&talk.scene);
     Some(json!({ "around": around, "before": before, "said": case.said.last()?, "meant": meant }))
