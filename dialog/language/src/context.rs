@@ -33,6 +33,9 @@ pub struct Context {
     pub(crate) running: Vec<Step>,
     /// The last plan, whole.
     pub(crate) last_plan: Vec<Step>,
+    /// How many of its steps were left when it was stopped.
+    #[serde(default)]
+    pub(crate) left_undone: usize,
     /// What failed last, with what was to follow it.
     pub(crate) failed: Option<Failure>,
     /// Why what was asked for last is done: `you asked me to open the fridge`, `you said "thirsty"`.
@@ -61,9 +64,9 @@ pub struct Context {
     /// left out.
     #[serde(default)]
     pub(crate) later: Vec<String>,
-    /// What is done after a wait.
+    /// What is done after waits.
     #[serde(default)]
-    pub(crate) awaited: Option<Awaited>,
+    pub(crate) awaited: Vec<Awaited>,
     /// What it waited for last, in words.
     #[serde(default)]
     pub(crate) waited: Option<String>,
@@ -190,8 +193,10 @@ impl Context {
     /// Takes note of a plan that is about to be carried out.
     pub(crate) fn begin(&mut self, steps: &[Step]) {
         self.question = None;
+        self.focus.group_taken(steps.iter().map(|step| &step.action));
         self.running = steps.to_vec();
         self.last_plan = steps.to_vec();
+        self.left_undone = 0;
         self.planned_for.clone_from(&self.reason);
         self.refused = None;
         self.request.clear();
@@ -264,7 +269,7 @@ impl Context {
     /// Whether something is put off: [`crate::Language::wake`] knows when it is done.
     #[must_use]
     pub const fn awaits(&self) -> bool {
-        self.awaited.is_some()
+        !self.awaited.is_empty()
     }
 
     /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.

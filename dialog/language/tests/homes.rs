@@ -21,6 +21,11 @@ fn any_knife_cuts_and_any_basin_washes() {
 fn rubbish_goes_into_a_bin_of_the_home() {
     means(KITCHEN, &["throw away the tomato"], "take Tomato, open Pedal_Bin, put Pedal_Bin");
     means(KITCHEN, &["throw the tomato on the kitchen island away"], "take Tomato, open Pedal_Bin, put Pedal_Bin");
+    let mut talk = Talk::new(KITCHEN);
+    assert!(talk.say("did you throw away the tomato?").starts_with("= No"));
+    talk.say_and_do("throw away the tomato");
+    let told = talk.say("did you throw it away?");
+    assert!(told.starts_with("= Yes"), "{told}");
 }
 
 #[test]
@@ -35,4 +40,96 @@ fn several_rooms_are_called_together_what_no_room_of_the_plan_is_called_alone() 
     let found = talk.say("go to the bedroom");
     assert!(found.starts_with("? ") && found.contains("blue room"), "{found}");
     assert_eq!(talk.say("the green one"), "go GreenRoom");
+}
+
+#[test]
+fn what_is_asked_of_a_thing_is_asked_of_the_one_that_was_named() {
+    let two_plates = [
+        "plan House_Family Kitchen",
+        "add Dinner_Plate on Kitchen_Sink_Double",
+        "add Dinner_Plate on Kitchen_Island",
+        "Dinner_Plate dirty",
+    ];
+    let mut talk = Talk::new(&two_plates);
+    for (asked, begins) in
+        [("is the plate in the sink dirty?", "= No"), ("is the plate on the kitchen island dirty?", "= Yes")]
+    {
+        let told = talk.say(asked);
+        assert!(told.starts_with(begins), "{asked} {told}");
+    }
+}
+
+#[test]
+fn what_it_did_is_told_of_what_it_did_alone() {
+    let mut talk = Talk::new(KITCHEN);
+    talk.say_and_do("put the tomato on the dining table");
+    for (asked, begins) in [
+        ("did you put the tomato in the fridge?", "= No"),
+        ("did you put the tomato on the dining table?", "= Yes"),
+        ("did you put the dining table on the tomato?", "= No"),
+        ("did you cut the tomato?", "= No"),
+    ] {
+        let told = talk.say(asked);
+        assert!(told.starts_with(begins), "{asked} {told}");
+    }
+    talk.say_and_do("wash the plate on the kitchen island");
+    let told = talk.say("did you wash the plate?");
+    assert!(told.starts_with("= Yes"), "{told}");
+}
+
+#[test]
+fn what_was_stopped_before_it_was_done_is_not_undone() {
+    let mut talk = Talk::new(&["plan House_Family LivingRoom"]);
+    assert_eq!(talk.say("turn on the telly"), "toggle Television");
+    talk.say("stop");
+    assert_eq!(talk.say("undo that"), "= There is nothing to undo yet.");
+    assert_eq!(talk.say_and_do("turn on the telly"), "toggle Television");
+    assert_eq!(talk.say("undo that"), "toggle Television");
+}
+
+#[test]
+fn what_is_left_to_list_is_nothing_where_all_was_listed() {
+    let mut talk = Talk::new(KITCHEN);
+    talk.say_and_do("open the fridge");
+    talk.say("what is in the fridge?");
+    let told = talk.say("what else?");
+    assert!(told.ends_with("there is nothing else."), "{told}");
+}
+
+#[test]
+fn what_is_undone_goes_back_to_where_it_was() {
+    let mut talk = Talk::new(KITCHEN);
+    talk.say_and_do("put the tomato on the dining table");
+    let steps = talk.say("undo that");
+    assert!(steps.ends_with("put Kitchen_Island"), "{steps}");
+}
+
+#[test]
+fn again_is_asked_of_things_as_they_are() {
+    let mut talk = Talk::new(&["plan House_Family LivingRoom"]);
+    talk.say_and_do("turn on the telly");
+    let told = talk.say("do it again");
+    assert!(told.starts_with("= ") && told.contains("already on"), "{told}");
+}
+
+#[test]
+fn what_is_to_be_left_is_left_whatever_is_in_the_hand() {
+    means(KITCHEN, &["pick up the tomato but leave the plate"], "take Tomato");
+}
+
+#[test]
+fn several_things_are_washed_and_put_back() {
+    let scene = [
+        "plan House_Family Kitchen",
+        "add Tomato on Kitchen_Island",
+        "add Teacup on Kitchen_Island",
+        "Tomato dirty",
+        "Teacup dirty",
+    ];
+    let mut talk = Talk::new(&scene);
+    talk.say_and_do("put the tomato and the teacup on the dining table");
+    let back = talk.say("put them back");
+    assert_eq!(back.matches("put Kitchen_Island").count(), 2, "{back}");
+    let washed = talk.say("wash them");
+    assert_eq!(washed.matches("clean Kitchen_Sink_Double").count(), 2, "{washed}");
 }

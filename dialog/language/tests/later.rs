@@ -214,6 +214,22 @@ fn a_time_is_waited_for() {
 }
 
 #[test]
+fn one_wait_does_not_end_another() {
+    let mut talk = Talk::new(&[]);
+    talk.say("in ten minutes open the fridge");
+    talk.say("in five minutes go to the main office");
+    assert_eq!(woken(&mut talk, 0.0), None);
+    assert_eq!(woken(&mut talk, 300.0).as_deref(), Some("go MainOffice"));
+    talk.say("stop");
+    assert!(!talk.context.awaits(), "a stop ends all of it");
+    talk.say("in ten minutes open the fridge");
+    talk.say("in five minutes turn left");
+    assert_eq!(woken(&mut talk, 400.0), None);
+    assert_eq!(woken(&mut talk, 700.0).as_deref(), Some("turn 90"));
+    assert!(talk.context.awaits());
+}
+
+#[test]
 fn what_is_to_be_so_is_waited_for() {
     for said in [
         "when the fridge is open, go to the main office",

@@ -36,18 +36,21 @@ impl Answerer<'_> {
         if bare.is_empty() {
             return Understanding::lost("I do not know what you mean.");
         }
+        // `is the kitchen light on`, `is the plate in the sink dirty`: that one, if there is one where it is said to be.
+        let found = self.ground().one(phrase, &Want::place(Intent::Find, &[], None));
+        let meant = if matches!(found, Ok(_) | Err(Miss::Several(_))) { phrase.clone() } else { bare.clone() };
         match claim {
-            Claim::State(state, words) if bare.is_all || bare.is_many() => self.are_in_state(&bare, state, words),
+            Claim::State(state, words) if meant.is_all || meant.is_many() => self.are_in_state(&meant, state, words),
             Claim::State(state, words) => {
-                self.with_object_that(may_be(state), &bare, |id| self.is_in_state(id, state, words))
+                self.with_object_that(may_be(state), &meant, |id| self.is_in_state(id, state, words))
             }
-            Claim::Full(filling) => self.with_known(&bare, |object| self.is_filled(object, filling)),
+            Claim::Full(filling) => self.with_known(&meant, |object| self.is_filled(object, filling)),
             Claim::Color(asked) => {
-                let color = bare.color.clone().filter(|color| color != asked);
-                let colorless = Phrase { color, ..bare };
+                let color = meant.color.clone().filter(|color| color != asked);
+                let colorless = Phrase { color, ..meant };
                 self.with_known(&colorless, |object| self.is_of_color(object, asked))
             }
-            Claim::Sound(is_asked) => self.with_known(&bare, |object| {
+            Claim::Sound(is_asked) => self.with_known(&meant, |object| {
                 let trouble = self.facts().trouble(object);
                 let the = self.short(object.id);
                 let text = match &trouble {
@@ -59,7 +62,7 @@ impl Answerer<'_> {
                 };
                 self.told(trouble.is_none() == is_asked, &text, object.id)
             }),
-            Claim::Done => self.with_known(&bare, |object| self.is_done(object)),
+            Claim::Done => self.with_known(&meant, |object| self.is_done(object)),
             Claim::For => self.with_known(&bare, |object| {
                 if object.works.is_none() {
                     return self.cannot_tell(object);
@@ -81,7 +84,7 @@ impl Answerer<'_> {
                 }),
             },
             Claim::Present => self.place_of(&bare),
-            Claim::Untold => self.with_known(&bare, |object| self.cannot_tell(object)),
+            Claim::Untold => self.with_known(&meant, |object| self.cannot_tell(object)),
         }
     }
 

@@ -103,8 +103,9 @@ impl Answerer<'_> {
         if there.is_empty() {
             return Understanding::whether(false, format!("I have seen nothing {place} yet."), Vec::new());
         }
-        let verb = if there.len() > 1 { "are" } else { "is" };
-        let text = format!("{} there {verb} {}.", prose::sentence(&place).trim_end_matches('.'), self.listed(&there));
+        let listed = self.listed(&there);
+        let verb = contents::verb(there.len(), &listed);
+        let text = format!("{} there {verb} {listed}.", prose::sentence(&place).trim_end_matches('.'));
         Understanding::whether(true, text, Vec::new())
     }
 
@@ -116,10 +117,11 @@ impl Answerer<'_> {
         };
         let there: Vec<&KnownObject> = self.scene.objects.iter().filter(lies).collect();
         let ids = there.iter().map(|object| object.id).collect();
-        let verb = if there.len() > 1 { "are" } else { "is" };
+        let listed = self.listed(&there);
+        let verb = contents::verb(there.len(), &listed);
         match there.is_empty() {
             true => Understanding::whether(false, "I see nothing on the floor here but furniture.", ids),
-            false => Understanding::whether(true, format!("On the floor there {verb} {}.", self.listed(&there)), ids),
+            false => Understanding::whether(true, format!("On the floor there {verb} {listed}."), ids),
         }
     }
 

@@ -151,8 +151,47 @@ impl Deeds {
 
     /// Whether a deed was done to this thing, or with it in the hand.
     fn is_about(&self, deed: &Deed, id: ObjectId) -> bool {
+        deed.step.object() == Some(id) || deed.step.changes() && self.held_before(deed) == Some(id)
+    }
+
+    fn held_before(&self, deed: &Deed) -> Option<ObjectId> {
         let before = self.0.iter().position(|other| std::ptr::eq(other, deed)).map_or(&[][..], |at| &self.0[..at]);
-        deed.step.object() == Some(id) || deed.step.changes() && held_after(before) == Some(id)
+        held_after(before)
+    }
+
+    /// Whether a deed was done to this thing itself: what is put, poured, thrown, filled or washed is in the hand.
+    fn is_done_to(&self, deed: &Deed, id: ObjectId) -> bool {
+        match deed.step.action {
+            Action::Place { .. }
+            | Action::Interact { verb: Verb::Pour | Verb::Throw | Verb::Fill | Verb::Clean, .. } => {
+                self.held_before(deed) == Some(id)
+            }
+            _ => deed.step.object() == Some(id),
+        }
+    }
+
+    /// Whether it put this thing there.
+    pub(crate) fn did_put(&self, id: ObjectId, place: ObjectId) -> bool {
+        let puts = |deed: &Deed| deed.step.action == Action::Place { receptacle: place } && self.is_done_to(deed, id);
+        self.0.iter().any(puts)
+    }
+
+    /// Whether it had a machine do that to this thing, which is no single deed, as it was asked to.
+    pub(crate) fn had_done(&self, intent: Intent, id: ObjectId) -> bool {
+        let is_by_machine = matches!(
+            intent,
+            Intent::Heat
+                | Intent::Cool
+                | Intent::Toast
+                | Intent::Repair
+                | Intent::Clean
+                | Intent::Color
+                | Intent::Carrot
+                | Intent::Resize
+                | Intent::Shrink
+        );
+        let word = format!(" {} ", intent.verb());
+        is_by_machine && self.0.iter().any(|deed| deed.reason.contains(&word) && self.is_about(deed, id))
     }
 
     /// Whether it did something of that kind to this thing or with it.
@@ -160,7 +199,7 @@ impl Deeds {
         // Who did anything to a thing went there, and touched it.
         let did = |deed: &Deed| match intent {
             Intent::GoTo => deed.step.object() == Some(id),
-            _ => is_of_step(&deed.step, intent) && self.is_about(deed, id),
+            _ => is_of_step(&deed.step, intent) && self.is_done_to(deed, id),
         };
         self.0.iter().any(did)
     }

@@ -55,6 +55,21 @@ impl Focus {
         }
     }
 
+    /// `them` are the things that were taken together, where no others were spoken of together.
+    pub(crate) fn group_taken<'a>(&mut self, actions: impl Iterator<Item = &'a Action>) {
+        let mut taken: Vec<ObjectId> = Vec::new();
+        for action in actions {
+            if let Action::PickUp { object } = action
+                && !taken.contains(object)
+            {
+                taken.push(*object);
+            }
+        }
+        if taken.len() > 1 && self.group.len() < 2 {
+            self.group = taken;
+        }
+    }
+
     /// Follows what a step is about.
     pub(crate) fn follow(&mut self, action: &Action) {
         match *action {

@@ -14,6 +14,9 @@ pub(crate) const LIST: usize = 8;
 /// So many more are named, too, where that is all.
 const LIST_TO_END: usize = 5;
 
+/// What is left to name where all was told.
+const NOTHING_ELSE: &str = "nothing else";
+
 /// How far from a thing's rim something is still under it or behind it, m.
 const BESIDE_M: f32 = 0.2;
 
@@ -23,6 +26,11 @@ pub(crate) const CEREAL_BOX: &str = "Cereal_Box_01";
 /// Whether there is cereal in it.
 pub(crate) fn has_cereal(catalog: &Catalog, object: &KnownObject) -> bool {
     object.has(StateFlag::Cereal) || catalog.class(object.class).id == CEREAL_BOX
+}
+
+/// `is` or `are`, after `there` and before a list of so many things.
+pub(crate) fn verb(count: usize, listed: &str) -> &'static str {
+    if count > 1 && listed != NOTHING_ELSE { "are" } else { "is" }
 }
 
 /// `a cup, two plates and 3 more`, without the first so many, which were told before.
@@ -36,12 +44,14 @@ pub(crate) fn listed(catalog: &Catalog, scene: &Known, objects: &[&KnownObject],
     }
     let mut counts: Vec<(String, (bool, usize))> = counts.into_iter().collect();
     counts.sort_by_key(|(_, (is_carried, _))| !is_carried);
+    // The list before this one went on to its end where little was left.
+    let told = if told > 0 && counts.len() <= told + LIST_TO_END { counts.len() } else { told };
     let left = counts.len().saturating_sub(told);
     let most = if left <= LIST + LIST_TO_END { left } else { LIST };
     let named = counts.iter().skip(told).take(most).map(|(name, (_, count))| prose::counted(name, *count));
     let more = (left > most).then(|| format!("{} more", left - most));
     let names: Vec<String> = named.chain(more).collect();
-    if names.is_empty() { "nothing else".to_owned() } else { prose::list(&names, "and") }
+    if names.is_empty() { NOTHING_ELSE.to_owned() } else { prose::list(&names, "and") }
 }
 
 /// `under the desk there is a golf ball`: what stands on the floor where this thing does; nothing, where nothing is known to.
@@ -69,7 +79,8 @@ pub(crate) fn inside(catalog: &Catalog, scene: &Known, id: ObjectId, told: usize
     if inside.is_empty() {
         return None;
     }
-    let verb = if inside.len() > 1 { "are" } else { "is" };
+    let listed = listed(catalog, scene, &inside, told);
+    let verb = verb(inside.len(), &listed);
     let (preposition, place) = (describe::preposition(catalog, scene, id), describe::short(catalog, scene, id));
-    Some(format!("{preposition} {place} there {verb} {}", listed(catalog, scene, &inside, told)))
+    Some(format!("{preposition} {place} there {verb} {listed}"))
 }

@@ -164,13 +164,20 @@ impl Planner<'_> {
     }
 
     pub(crate) fn add_place(&mut self, settled: &Settled) -> Result<(), Fault> {
-        if self.is_several(settled) {
-            return self.add_places(settled);
-        }
-        // `leave the apple`
-        if settled.is_left && settled.goal.is_none() && !settled.objects.is_empty() && self.scene.robot.held.is_none() {
+        let held = self.scene.robot.held;
+        let is_held =
+            |phrase: &Phrase| held.is_some() && self.ground().one(phrase, &Want::object(settled.intent)).ok() == held;
+        // `leave the apple`, `bring the mug but leave the apple`
+        if settled.is_left
+            && settled.goal.is_none()
+            && !settled.objects.is_empty()
+            && !settled.objects.iter().any(is_held)
+        {
             self.notes.push("I leave that as it is".to_owned());
             return Ok(());
+        }
+        if self.is_several(settled) {
+            return self.add_places(settled);
         }
         let is_it = |phrase: &Phrase| phrase.pronoun.is_some();
         if settled.intent == Intent::Drop && self.scene.robot.held.is_none() && settled.objects.iter().all(is_it) {
@@ -215,6 +222,10 @@ impl Planner<'_> {
     fn add_places(&mut self, settled: &Settled) -> Result<(), Fault> {
         let want = Want { held_first: false, ..Want::object(settled.intent) };
         let objects = self.find_objects(settled, &want)?;
+        // `put them back`: each where it was taken from.
+        if settled.is_back && settled.goal.is_none() {
+            return objects.into_iter().try_for_each(|object| self.put_back(object));
+        }
         let Some(goal) = &settled.goal else {
             return Err(Fault::Cannot("I can only carry one thing at a time. Tell me where to put them.".to_owned()));
         };
@@ -375,7 +386,10 @@ impl Planner<'_> {
         });
         match bin {
             Some(_) => self.add_throw(settled),
-            None => self.add_throw(&Settled { goal: None, ..settled.clone() }),
+            None => {
+                let settled = settled.without_goal(self);
+                self.add_throw(&settled)
+            }
         }
     }
 

@@ -194,7 +194,7 @@ impl Planner<'_> {
                 continue;
             }
             // Each of several in its turn: there is but one hand.
-            if settled.objects[index].is_all {
+            if settled.objects[index].is_all || self.is_group(&settled.objects[index]) {
                 let want = Want { held_first: false, ..Want::object(settled.intent) };
                 let phrase = settled.objects[index].clone();
                 for id in self.find_each(&phrase, &want, Some(Role::Object(index)))? {

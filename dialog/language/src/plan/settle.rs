@@ -126,6 +126,17 @@ impl Settled {
         }
     }
 
+    /// The same with nowhere to go, which says where the thing is if it is there: `throw away the donut on the table`.
+    pub(crate) fn without_goal(&self, planner: &Planner<'_>) -> Self {
+        let mut settled = Self { goal: None, ..self.clone() };
+        if let Some(Goal { preposition, place: place @ Place::Object(phrase), .. }) = &self.goal
+            && self.stands_there(planner, phrase)
+        {
+            settled.describe_object(*preposition, place);
+        }
+        settled
+    }
+
     fn is_generic(&self) -> bool {
         let is_thing = |phrase: &Phrase| phrase.pronoun == Some(Pronoun::Thing) && phrase.text.starts_with("the ");
         self.objects.last().is_some_and(is_thing)

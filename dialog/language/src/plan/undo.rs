@@ -37,7 +37,10 @@ impl Planner<'_> {
             Action::Place { receptacle } => {
                 let last = self.focus.placed.filter(|placed| self.is_in(*placed, receptacle));
                 let placed = last.ok_or_else(|| self.cannot_undo(step))?;
+                // Where it was taken from at first is where it goes back to.
+                let origins = self.focus.origins.clone();
                 self.pick_up(placed, false)?;
+                self.focus.origins = origins;
             }
             Action::Interact { verb: Verb::Open, object } => self.interact(Verb::Close, object, "closing"),
             Action::Interact { verb: Verb::Close, object } => self.interact(Verb::Open, object, "opening"),

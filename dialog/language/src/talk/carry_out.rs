@@ -20,7 +20,8 @@ use crate::{
 impl Conversation<'_> {
     /// Takes back the last plan.
     pub(crate) fn undo(&self, context: &mut Context) -> Understanding {
-        if context.last_plan.is_empty() {
+        let done = context.last_plan.len().saturating_sub(context.left_undone);
+        if done == 0 {
             return Understanding::answer("There is nothing to undo yet.");
         }
         if !context.running.is_empty() {
@@ -30,7 +31,7 @@ impl Conversation<'_> {
             return Understanding::answer("That was not finished, so I cannot undo it. Tell me what to do instead.");
         }
         let mut planner = self.planner(context.focus.clone());
-        match planner.undo(&context.last_plan) {
+        match planner.undo(&context.last_plan[..done]) {
             Ok(()) => {
                 context.focus = planner.focus;
                 if planner.steps.is_empty() {

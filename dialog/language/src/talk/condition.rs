@@ -9,7 +9,9 @@ use crate::{
         chatter,
         clause::{Clause, Part},
         parts,
+        phrase::Phrase,
         question::{self, Question},
+        slot,
     },
     say::ask,
     talk::conversation::Conversation,
@@ -53,7 +55,10 @@ impl Conversation<'_> {
                 self.speak_of(&condition, &request, context);
                 Some(self.understand_all(said(request), context))
             }
-            Truth::Unknown if is_there && holds => Some(self.understand_all(said(request), context)),
+            // `if there is milk in the fridge, bring it`: who does that finds out.
+            Truth::Unknown if is_there && holds && self.finds_out(&condition, &request) => {
+                Some(self.understand_all(said(request), context))
+            }
             Truth::Fails(text) => {
                 let rest = said(otherwise);
                 if rest.is_empty() {
@@ -71,6 +76,18 @@ impl Conversation<'_> {
                 Some(ask::confirmation(format!("I cannot tell whether {condition}. Shall I do it all the same?")))
             }
         }
+    }
+
+    /// Whether a request is about what its condition says is there.
+    fn finds_out(&self, condition: &[String], request: &[String]) -> bool {
+        let Some((question, is_negated)) = self.question_of(condition, request) else { return false };
+        let is_named = |about: &Phrase| {
+            let is_it = |phrase: &&Phrase| {
+                phrase.pronoun.is_some() || about.namings.iter().any(|naming| phrase.naming(naming.class).is_some())
+            };
+            self.clauses(request).iter().any(|clause| slot::named(clause).iter().any(&is_it))
+        };
+        !is_negated && question.about.as_ref().is_none_or(is_named)
     }
 
     /// What a condition is about is what `it` stands for after it.

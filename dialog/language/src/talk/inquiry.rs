@@ -92,7 +92,9 @@ impl Conversation<'_> {
         };
         let answer = self.answerer(context, told).answer(question);
         if matches!(question.kind, QuestionKind::Seeing | QuestionKind::Contents) {
-            context.list = Some((question.clone(), told + contents::LIST));
+            // What else there is, is no yes or no.
+            let listed = question::Question { is_whether: false, ..question.clone() };
+            context.list = Some((listed, told + contents::LIST));
         }
         context.question = Some(question.kind);
         context.unwatched = self.unwatched(question, &answer, context);

@@ -12,9 +12,18 @@ impl Conversation<'_> {
     /// What is left to do once a plan has ended: the search that it is a part of, or what is next.
     pub(crate) fn carry_on(&self, context: &mut Context) -> Option<Understanding> {
         let later = context.later.clone();
+        let mut said = None;
         if let Some(search) = context.search.take() {
             let understanding = self.proceed(search, context);
-            return Some(context.keep(later, understanding));
+            match &understanding {
+                // It was so already: what is next is done.
+                Understanding::Answer { text, .. } if !later.is_empty() => said = Some(text.clone()),
+                Understanding::Refusal { .. } => {
+                    context.later.clear();
+                    return Some(understanding);
+                }
+                _ => return Some(context.keep(later, understanding)),
+            }
         }
         // Who is asked something answers first.
         if context.pending.is_some() {
@@ -23,7 +32,12 @@ impl Conversation<'_> {
         let is_met = |text: &String| self.scene.goals.iter().any(|goal| goal.met && goal.text == *text);
         let left: Vec<String> = later.into_iter().filter(|text| !is_met(text)).collect();
         context.later.clear();
-        self.one_after_the_other(left, context, |text, context| self.understand_later(text, context))
+        let next = self.one_after_the_other(left, context, |text, context| self.understand_later(text, context));
+        match (said, next) {
+            (Some(said), Some(next)) => Some(next.after(&said)),
+            (Some(said), None) => Some(Understanding::answer(said)),
+            (None, next) => next,
+        }
     }
 
     /// What was left for later; nothing, where it is not understood: nobody is asked what a remark might want.

@@ -54,9 +54,9 @@ impl Conversation<'_> {
                     said.push(format!("I do not know the answer to \"{text}\"."));
                 }
                 // What follows waits, too.
-                Understanding::Answer { .. } if then.awaited.is_some() && then.awaited != context.awaited => {
+                Understanding::Answer { .. } if then.awaits() && then.awaited != context.awaited => {
                     *context = then;
-                    context.awaited.iter_mut().for_each(|awaited| awaited.then.extend(texts.by_ref()));
+                    context.awaited.last_mut().into_iter().for_each(|awaited| awaited.then.extend(texts.by_ref()));
                     let is_first = said.is_empty();
                     return Some(if is_first { understanding } else { understanding.after(&said.join(" ")) });
                 }

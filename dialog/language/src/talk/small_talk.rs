@@ -1,8 +1,8 @@
 //! What is a whole utterance by itself: yes and no, thanks, a greeting, again, undo.
 
 use crate::{
-    context::Context,
-    read::{question, tidy::plain},
+    context::{Context, search::Consent},
+    read::{clause::Part, parts, question, tidy::plain},
     talk::conversation::Conversation,
     understanding::Understanding,
     words::{lexicon::Small, question_kind::QuestionKind},
@@ -62,10 +62,15 @@ impl Conversation<'_> {
         let small = self.small(words);
         let is = |kind| small.contains(&kind);
         if is(Small::Again) && !context.last_plan.is_empty() {
-            let steps = context.failed.take().map_or_else(
-                || context.last_plan.clone(),
-                |failure| std::iter::once(failure.step).chain(failure.rest).collect(),
-            );
+            let steps = match context.failed.take() {
+                Some(failure) => std::iter::once(failure.step).chain(failure.rest).collect(),
+                // As things are now: what is switched on already is not switched once more.
+                None if !context.request.is_empty() => {
+                    let consent = Consent { is_agreed: true, ..Consent::default() };
+                    return Some(self.plan(context.request.clone(), consent, context));
+                }
+                None => context.last_plan.clone(),
+            };
             return Some(self.go(steps, context));
         }
         // `why not?` asks, where the robot did not.
@@ -93,7 +98,11 @@ impl Conversation<'_> {
         if is(Small::Hello) {
             return Some(Understanding::answer("Hello! What can I do for you?"));
         }
-        self.chat(words).map(Understanding::answer)
+        // `come here`: who is there is come to.
+        let comes = |part: &Part| matches!(part, Part::Clause(clause) if clause.verb == "come");
+        let is_called =
+            || self.scene.person.is_some() && parts::parts(self.lexicon, self.catalog, words).iter().any(comes);
+        self.chat(words).filter(|_| !is_called()).map(Understanding::answer)
     }
 
     /// `undo the previous command`.

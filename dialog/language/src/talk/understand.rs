@@ -93,10 +93,13 @@ impl Conversation<'_> {
     /// It stops, and then does what else was asked for.
     pub(crate) fn stopped(&self, rest: &str, context: &mut Context) -> Understanding {
         context.pending = None;
+        if !context.running.is_empty() && context.last_plan.ends_with(&context.running) {
+            context.left_undone = context.running.len();
+        }
         context.running.clear();
         context.failed = None;
         context.search = None;
-        context.awaited = None;
+        context.awaited.clear();
         context.later.clear();
         // A reason for it is taken for many things, but it is no question.
         let asks = self.asks_for_anything(rest) || rest.contains('?') && self.is_rewritten_as_request(rest, context);
@@ -206,7 +209,12 @@ impl Conversation<'_> {
             context.pending = Some(Pending::Lab { words, at: kind.at });
             return kind.question(self.catalog);
         }
+        let under_way = (context.search.clone(), context.later.clone(), context.reason.clone());
         let understanding = self.fresh(&words, parts, context);
+        // What was not understood changes nothing of what is under way.
+        if understanding.is_lost() {
+            (context.search, context.later, context.reason) = under_way;
+        }
         // What was said in between leaves the robot's own question open.
         if matches!(understanding, Understanding::Answer { .. } | Understanding::Refusal { .. }) {
             context.pending = context.pending.take().or(open);

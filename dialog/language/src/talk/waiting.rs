@@ -50,10 +50,10 @@ impl Conversation<'_> {
     /// `did you wait?`: what it waited for last.
     pub(crate) fn whether_waited(&self, done: &[String], context: &Context) -> Option<Understanding> {
         self.lexicon.waiting.waits.longest(done)?;
-        let text = match (&context.waited, &context.awaited) {
-            (_, Some(_)) => "Yes, I am waiting now.".to_owned(),
-            (Some(waited), None) => format!("Yes, I waited {waited}."),
-            (None, None) => "No, I have waited for nothing.".to_owned(),
+        let text = match &context.waited {
+            _ if context.awaits() => "Yes, I am waiting now.".to_owned(),
+            Some(waited) => format!("Yes, I waited {waited}."),
+            None => "No, I have waited for nothing.".to_owned(),
         };
         Some(Understanding::whether(context.waited.is_some() || context.awaits(), text, Vec::new()))
     }
@@ -71,20 +71,25 @@ impl Conversation<'_> {
 
     /// Goes on with what was put off, if its time has come: nothing before that, or while there is something else to do.
     pub(crate) fn wake(&self, now_s: f64, context: &mut Context) -> Option<Understanding> {
-        let waited_s = now_s - *context.awaited.as_mut()?.since_s.get_or_insert(now_s);
+        for awaited in &mut context.awaited {
+            awaited.since_s.get_or_insert(now_s);
+        }
         if context.is_busy() || context.pending.is_some() || !context.later.is_empty() {
             return None;
         }
-        let Awaited { until, then, .. } = context.awaited.as_ref()?;
-        let request = then.first().map(|then| self.lexicon.normalise(then).0).unwrap_or_default();
-        let is_due = match until {
-            Until::Seconds(seconds) => waited_s >= f64::from(*seconds),
-            Until::So(claim) => matches!(self.truth(claim, &request, true, context), Truth::Holds),
+        let waited_s = |awaited: &Awaited| now_s - awaited.since_s.unwrap_or(now_s);
+        let is_due = |awaited: &Awaited| {
+            let request = awaited.then.first().map(|then| self.lexicon.normalise(then).0).unwrap_or_default();
+            match &awaited.until {
+                Until::Seconds(seconds) => waited_s(awaited) >= f64::from(*seconds),
+                Until::So(claim) => matches!(self.truth(claim, &request, true, context), Truth::Holds),
+            }
         };
-        if !is_due && waited_s < f64::from(LONGEST_S.max(until.seconds())) {
-            return None;
-        }
-        let Awaited { until, then, .. } = context.awaited.take()?;
+        let is_over = |awaited: &Awaited| waited_s(awaited) >= f64::from(LONGEST_S.max(awaited.until.seconds()));
+        let due = context.awaited.iter().position(is_due);
+        let is_due = due.is_some();
+        let at = due.or_else(|| context.awaited.iter().position(is_over))?;
+        let Awaited { until, then, .. } = context.awaited.remove(at);
         let words = until.in_words();
         let longest = Until::Seconds(LONGEST_S).in_words();
         context.waited = Some(match &until {
@@ -135,7 +140,9 @@ impl Conversation<'_> {
             true => (text, Vec::new()),
             false => (format!("{text} Then I go on."), vec![token::sentence(&then)]),
         };
-        context.awaited = Some(Awaited { until, then, since_s: None });
+        // The same said again is for another time.
+        context.awaited.retain(|before| before.then != then);
+        context.awaited.push(Awaited { until, then, since_s: None });
         Understanding::answer(text)
     }
 

@@ -1,12 +1,13 @@
 //! Questions that want a yes or a no: "did you close the fridge?" asks, while "can you close the fridge?" requests.
 
-use cohabit_cdf::{RoomId, state::StateFlag};
+use cohabit_cdf::{ObjectId, RoomId, state::StateFlag};
 
 use crate::{
     answer::claim::asked_state,
     context::Context,
     ground::want::Want,
     known::describe,
+    plan::settle,
     read::{
         chatter,
         clause::{Clause, Part},
@@ -17,7 +18,7 @@ use crate::{
     },
     talk::conversation::Conversation,
     understanding::Understanding,
-    words::{intent::Intent, prose, question_kind::QuestionKind},
+    words::{intent::Intent, lexicon::Preposition, prose, question_kind::QuestionKind},
 };
 
 impl Conversation<'_> {
@@ -91,12 +92,26 @@ impl Conversation<'_> {
         {
             return Some(self.whether_been(room, context));
         }
-        let phrase = clause.objects.first()?;
+        let settled = settle::settle(&self.planner(context.focus.clone()), &clause);
+        let phrase = settled.objects.first()?;
         let ground = self.ground(&context.focus);
-        let Ok(id) = ground.one(phrase, &Want::place(Intent::Find, &[], None)) else {
+        // `did you throw it away` is of what was in the hand, not of where it went.
+        let want = if clause.intent.is_about_held() {
+            Want { held_first: false, ..Want::object(clause.intent) }
+        } else {
+            Want::place(Intent::Find, &[], None)
+        };
+        let Ok(id) = ground.one(phrase, &want) else {
             let is_search = clause.intent == Intent::Find && !phrase.is_empty();
             return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
         };
+        // `did you put the milk in the fridge`, of milk that it put on the table
+        let there = settled.goal.as_ref().filter(|_| clause.intent == Intent::Place).and_then(|goal| {
+            let (Preposition::In | Preposition::On, Place::Object(place)) = (goal.preposition, &goal.place) else {
+                return None;
+            };
+            ground.one(place, &Want::place(Intent::Find, &[], Some(id))).ok()
+        });
         context.focus.mention(id);
         let place = self.answerer(context, 0).place_sentence(id);
         if clause.intent == Intent::Find {
@@ -106,8 +121,15 @@ impl Conversation<'_> {
         let is_so = |(flag, expected, _): &(StateFlag, bool, _)| {
             self.scene.object(id).is_some_and(|object| object.has(*flag)) == *expected
         };
-        let did =
-            context.deeds.did(clause.intent, id) || state.as_ref().is_some_and(is_so) && context.deeds.to(id).is_some();
+        let is_discarded = clause.intent == Intent::Discard && self.is_in_bin(id);
+        let did = match there {
+            Some(place) => context.deeds.did_put(id, place),
+            None => {
+                context.deeds.did(clause.intent, id)
+                    || is_discarded && context.deeds.to(id).is_some()
+                    || state.as_ref().is_none_or(is_so) && context.deeds.had_done(clause.intent, id)
+            }
+        };
         let stated = state.map(|state| {
             let (_, expected, states) = state;
             let the = describe::short(self.catalog, self.scene, id);
@@ -124,6 +146,11 @@ impl Conversation<'_> {
             (false, None) => format!("No, not that I remember: {place}."),
         };
         Some(Understanding::whether(did, text, vec![id]))
+    }
+
+    fn is_in_bin(&self, id: ObjectId) -> bool {
+        let parent = self.scene.object(id).and_then(|object| self.scene.object(object.parent?));
+        parent.is_some_and(|parent| self.devices.bins.contains(&parent.class))
     }
 
     /// `did you touch the plant`: what it did with it, whatever that verb means.
