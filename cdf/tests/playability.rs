@@ -44,6 +44,8 @@ fn goals_that_cannot_be_met() {
     for (states, reason) in [
         (json!([{"Bowl_01_1": "isHot=true"}]), ""),
         (json!([{"Bowl_01_1": "isOpen=false"}]), ""),
+        (json!([{"Bowl_01_1": "isEmpty=false"}]), ""),
+        (json!([{"Apple_1": "isEmpty=false"}]), "nothing can be in or on `Apple_1`: Apple is no receptacle"),
         (json!([{"Bowl_01_1": "isOpen=true"}]), "`Bowl_01_1` never gets into this state: Bowl is not openable"),
         (json!([{"Bowl_01_*": "isOpen=true"}]), "`Bowl_01_*` never gets into this state: Bowl is not openable"),
         (json!([{"Apple_1": "isFilled=Milk"}]), "`Apple_1` never gets into this state: Apple is not fillable"),

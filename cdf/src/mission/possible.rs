@@ -59,7 +59,8 @@ impl Possibility<'_> {
                 let class = self.class(of).filter(|class| class.id != BOWL)?;
                 Some(format!("cereal does not belong into `{of}`: {} is no bowl", class.name))
             }
-            Predicate::Empty(false) => self.no_receptacle(of),
+            // A fluid is something in it, too.
+            Predicate::Empty(false) => self.lacks(of, Property::Fillable).and_then(|_| self.no_receptacle(of)),
             Predicate::Empty(true) | Predicate::Color(_) => None,
             Predicate::Condition(name, value) => {
                 let condition = self.condition(name, of)?;

@@ -60,6 +60,40 @@ fn carry_out(world: &mut World, command: u64, action: Action) {
     panic!("{action:?} did not end");
 }
 
+/// Has the first body do something, as far as it gets.
+fn attempt(world: &mut World, command: u64, action: Action) {
+    let mut report = world.step(&[Input { command, body: BodyId(0), action }]);
+    while !report.outcomes.iter().any(|outcome| outcome.command == command) {
+        report = world.step(&[]);
+    }
+}
+
+#[test]
+fn what_gets_too_heavy_to_be_pushed_stands_fast_before_a_snapshot_as_after_it() {
+    let homes = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
+    let (name, text) = homes.packs()[0].missions().find(|(_, text)| text.contains("Care_Room")).unwrap();
+    let plan = SessionPlan::new(name, text, Arc::clone(homes.catalog()), 1).unwrap();
+    let mut world = plan.build().unwrap();
+    let [tumbler, wheelchair] = ["Tumbler_10000", "Wheelchair_10000"].map(|instance| world.find(instance).unwrap());
+    let loading = [
+        Action::GoTo { target: GoToTarget::Object(tumbler) },
+        Action::PickUp { object: tumbler },
+        Action::GoTo { target: GoToTarget::Object(wheelchair) },
+        Action::Place { receptacle: wheelchair },
+    ];
+    for (command, action) in (1..).zip(loading) {
+        carry_out(&mut world, command, action);
+    }
+    let mut again = plan.build().unwrap();
+    again.restore(&world.snapshot()).unwrap();
+    let before = world.object(wheelchair).unwrap().position_m;
+    for one in [&mut world, &mut again] {
+        attempt(one, 9, Action::Move { distance_m: 2.0 });
+    }
+    assert_eq!(again.differences(&world), Vec::<String>::new());
+    assert_eq!(world.object(wheelchair).unwrap().position_m, before);
+}
+
 fn plan_of_twenty() -> SessionPlan {
     let world = twenty_rooms::world();
     let (name, text) = world.packs()[0].missions().next().unwrap();

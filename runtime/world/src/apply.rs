@@ -12,9 +12,11 @@ use crate::{
     geometry::Pose,
     navigation::blocks_the_way,
     physics, power,
+    pushable::is_pushable,
     report::{Ending, Event, SoundKind},
     rules::on_power,
     state::State,
+    works::numbered,
 };
 
 /// A world's changing part, with what is constant about it, and where its events go.
@@ -49,9 +51,9 @@ impl Changes<'_> {
                 self.state.at_mut(object).color = color;
                 self.changed(object);
             }
-            Effect::Hold(object, body) => self.hold(object, body),
-            Effect::Put { object, spot } => self.put(object, spot),
-            Effect::LetGo(object, velocity) => self.let_go(object, velocity),
+            Effect::Hold(object, body) => self.load(|own| own.hold(object, body)),
+            Effect::Put { object, spot } => self.load(|own| own.put(object, spot)),
+            Effect::LetGo(object, velocity) => self.load(|own| own.let_go(object, velocity)),
             Effect::Spawn { class, instance, spot, by, was } => self.spawn(class, instance, spot, by, was),
             Effect::Return { object, spot } => self.bring_back(object, spot),
             Effect::Remove(object) => self.remove(object),
@@ -92,6 +94,20 @@ impl Changes<'_> {
         id
     }
 
+    /// Makes a change by which what stands on the floor may get too heavy to be pushed, or light enough.
+    pub fn load(&mut self, change: impl FnOnce(&mut Self)) {
+        let before = self.pushable();
+        change(self);
+        self.state.floor_version += u64::from(self.pushable() != before);
+    }
+
+    /// What stands in the way and can be pushed out of it.
+    fn pushable(&self) -> Vec<ObjectId> {
+        let facts = self.facts();
+        let all = facts.state.existing().map(|(id, _)| id);
+        all.filter(|id| blocks_the_way(&facts, *id) && is_pushable(&facts, *id)).collect()
+    }
+
     fn spawn(&mut self, class: ClassId, instance: String, spot: Spot, by: Option<ObjectId>, was: Option<ObjectId>) {
         let (room, pose) = match spot {
             Spot::Anchor { parent, .. } => (self.state.at(parent).room, self.state.at(parent).pose),
@@ -100,6 +116,12 @@ impl Changes<'_> {
                 let Some(room) = room.or_else(|| self.floor.nearest_room(at.truncate())) else { return };
                 (room, Pose::level(at, 0.0))
             }
+        };
+        // All that one work makes was named before any of it was there.
+        let is_taken = self.state.objects.iter().any(|object| object.is_called(&instance));
+        let instance = match instance.rsplit_once('_') {
+            Some((stem, _)) if is_taken => numbered(&self.facts(), stem),
+            _ => instance,
         };
         let mut object = Object::new(instance, class, room, pose);
         if let Some(machine) = by.map(|by| self.state.at(by)) {

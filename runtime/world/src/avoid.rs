@@ -219,7 +219,7 @@ impl World {
     pub(crate) fn send_aside(&mut self, walker: BodyId, task: &mut Task, met: Obstruction) {
         let (Obstruction::Body(stander), Some(way), Some(_)) = (met, task.way(), task.command()) else { return };
         let (body, walking) = (&self.state.bodies[stander.0 as usize], &self.state.bodies[walker.0 as usize]);
-        let is_idle = body.kind == BodyKind::Robot && !body.busy();
+        let is_idle = body.kind == BodyKind::Robot && body.alive && !body.busy();
         let is_due = task.waited % UNASKED_TICKS == UNASKED_TICKS - 1 && task.detours < MOST_DETOURS;
         if !is_idle || !is_due {
             return;

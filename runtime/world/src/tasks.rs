@@ -42,7 +42,7 @@ impl World {
             return;
         };
         if !body.alive {
-            outcomes.push(outcome((Status::KilledByHazard, "this robot is out of order".to_owned())));
+            outcomes.push(outcome(out_of_order()));
             return;
         }
         let driven = self.drive_on(input, outcomes);
@@ -209,6 +209,11 @@ impl World {
             retract(&mut self.state.bodies[index]);
             return None;
         };
+        if !self.state.bodies[index].alive {
+            let body = &mut self.state.bodies[index];
+            (body.speed_m_s, body.turn_rad_s) = (0.0, 0.0);
+            return self.finish(id, &task, out_of_order());
+        }
         self.mind_the_way(id, &mut task);
         let from = self.state.bodies[index].position;
         let mut body = self.state.bodies[index].clone();
@@ -350,6 +355,11 @@ impl World {
             on_the_way.then_some(door)
         })
     }
+}
+
+/// How the command of a robot that a hazard killed ends.
+fn out_of_order() -> End {
+    (Status::KilledByHazard, "this robot is out of order".to_owned())
 }
 
 /// How a motion ends that came to its end.

@@ -21,7 +21,7 @@ fn product_instance(facts: &Facts<'_>, machine: ObjectId, class: ClassId) -> Str
 }
 
 /// `stem_1`, or the next number that nothing ever had.
-fn numbered(facts: &Facts<'_>, stem: &str) -> String {
+pub(crate) fn numbered(facts: &Facts<'_>, stem: &str) -> String {
     (1_u32..)
         .map(|number| format!("{stem}_{number}"))
         .find(|instance| !facts.state.objects.iter().any(|object| object.is_called(instance)))

@@ -132,7 +132,8 @@ impl Change {
         )
     }
 
-    /// Whether the work of a machine can bring it about: nobody is at hand, and nothing is pressed.
+    /// Whether the work of a machine can bring it about: nobody is at hand, nothing is pressed, and no other work follows from it,
+    /// which might be the same one.
     #[must_use]
     pub const fn is_of_a_work(&self) -> bool {
         !matches!(
@@ -143,6 +144,8 @@ impl Change {
                 | Self::Throw(_)
                 | Self::Send(..)
                 | Self::Run(..)
+                | Self::Feed(..)
+                | Self::Settle(_)
                 | Self::Scan(_)
                 | Self::Read(_)
         )

@@ -170,10 +170,10 @@ impl Reader<'_> {
                 action: raw.action,
                 when: self.conditions(&raw.when)?,
                 words: raw.words.clone(),
-                needs: self.needs(&raw.needs, &read.shared, 0)?,
+                needs: self.needs(&raw.needs, &read.shared, 0, &mut 0)?,
                 effects: self.effects(&raw.effects)?,
                 done: raw.done.clone(),
-                but: self.needs(&raw.but, &read.shared, 0)?,
+                but: self.needs(&raw.but, &read.shared, 0, &mut 0)?,
             })
         };
         each(&read.rules, errors, rule)
@@ -181,12 +181,13 @@ impl Reader<'_> {
 
     pub fn devices(&self, read: &TableFile, errors: &mut Vec<TableError>) -> Vec<Device> {
         let device = |raw: &RawDevice| {
+            let work_s = raw.work_s.unwrap_or(self.times.work_s);
             Ok(Device {
                 classes: raw.class.clone(),
                 works: raw.works.clone(),
                 aims: raw.aims.clone(),
                 worked_by: raw.worked_by.clone(),
-                needs: self.needs(&raw.needs, &read.shared, 0)?,
+                needs: self.needs(&raw.needs, &read.shared, 0, &mut 0)?,
                 press: self.effects(&raw.press)?,
                 work: raw.work.clone(),
                 at: raw.at,
@@ -197,8 +198,9 @@ impl Reader<'_> {
                 alarm: raw.alarm,
                 ray: raw.ray,
                 slots: raw.slots,
-                work_s: raw.work_s.unwrap_or(self.times.work_s),
-                moment_s: raw.moment_s.unwrap_or(self.times.moment_s),
+                work_s,
+                // What is off before its work is due would never do it.
+                moment_s: raw.moment_s.unwrap_or(self.times.moment_s).max(work_s),
             })
         };
         each(&read.devices, errors, device)
@@ -221,16 +223,23 @@ impl Reader<'_> {
         raw: &[RawNeed],
         shared: &BTreeMap<String, Vec<RawNeed>>,
         depth: u32,
+        count: &mut u32,
     ) -> Result<Vec<Need>, TableError> {
         /// Shared needs of shared needs; more is a circle.
         const DEEPEST: u32 = 8;
+        /// The most needs of an entry, shared ones and their names counted wherever they stand.
+        const MOST: u32 = 1000;
         let mut needs = Vec::new();
         for need in raw {
+            *count += 1;
+            if *count > MOST {
+                return Err(self.text(format!("an entry has more than {MOST} needs, shared ones counted each time")));
+            }
             match need {
                 RawNeed::Shared(name) => {
                     let list = shared.get(name).filter(|_| depth < DEEPEST);
                     let list = list.ok_or_else(|| self.text(format!("there are no shared needs `{name}`")))?;
-                    needs.extend(self.needs(list, shared, depth + 1)?);
+                    needs.extend(self.needs(list, shared, depth + 1, count)?);
                 }
                 RawNeed::One(conditions, status, words) => {
                     let texts = match conditions {

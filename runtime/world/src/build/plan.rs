@@ -83,7 +83,7 @@ impl Builder<'_> {
             .class_of_instance(instance)
             .ok_or_else(|| BuildError::UnknownClass { object: instance.to_owned() })?;
         let mut object = Object::new(instance.to_owned(), class, room, pose);
-        let circuit = self.layout.rooms.iter().find(|plan| plan.id == room).map(|plan| i32::from(plan.circuit));
+        let circuit = self.circuit_of(room);
         object.circuit = circuit;
         let class = self.catalog.class(class);
         (object.flags, object.fluid) = (class.states_as_built(), class.fluid_as_built());
@@ -91,6 +91,11 @@ impl Builder<'_> {
             object.feeds = circuit;
         }
         Ok(self.changes().add(object))
+    }
+
+    /// The circuit that feeds a room.
+    pub(super) fn circuit_of(&self, room: RoomId) -> Option<i32> {
+        self.layout.rooms.iter().find(|plan| plan.id == room).map(|plan| i32::from(plan.circuit))
     }
 }
 

@@ -149,7 +149,13 @@ impl Builder<'_> {
                 id
             }
         };
-        self.bring(id, request)
+        self.bring(id, request)?;
+        // What needs power has that of the room that it came to.
+        if known.is_none() && self.facts().has(id, Property::Powerable) {
+            let room = self.state.at(id).room;
+            self.state.at_mut(id).circuit = self.circuit_of(room);
+        }
+        Ok(())
     }
 
     /// Whether an object already is where its request wants it.

@@ -24,7 +24,7 @@ impl World {
             let below = receptacle_below(&facts, id, pose.position);
             let mut changes = self.changes(events);
             match below {
-                Some((parent, local)) => changes.attach(id, parent, None, local),
+                Some((parent, local)) => changes.load(|own| own.attach(id, parent, None, local)),
                 None => lie_on_floor(&mut changes, id, pose),
             }
             changes.events.push(Event::ObjectChanged { object: id });
