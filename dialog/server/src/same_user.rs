@@ -8,10 +8,13 @@ use std::{
 
 /// The kernel's tables of TCP sockets, for IPv4 and IPv6 (`man 5 proc`).
 const TABLES: [&str; 2] = ["/proc/net/tcp", "/proc/net/tcp6"];
-/// Columns of such a table: a socket's own address, that of its peer, and its user.
+/// Columns of such a table: a socket's own address, that of its peer, its user, and its inode.
 const LOCAL: usize = 1;
 const REMOTE: usize = 2;
 const USER: usize = 7;
+const INODE: usize = 9;
+/// The inode of a socket that no process holds any more: the kernel then says that it is root's, whoever's it was.
+const CLOSED: &str = "0";
 
 /// Whether the connection from `client` to `server` stays on this machine and was made by the user of this process, or by root,
 /// who may read its memory anyway. What cannot be told counts as no.
@@ -31,7 +34,8 @@ fn user_of(table: &str, client: SocketAddr, server: SocketAddr) -> Option<u32> {
     table.lines().skip(1).find_map(|line| {
         let columns: Vec<&str> = line.split_ascii_whitespace().collect();
         let is = |column: usize, address| columns.get(column).and_then(|text| self::address(text)) == Some(address);
-        (is(LOCAL, client) && is(REMOTE, server)).then(|| columns.get(USER)?.parse().ok())?
+        let is_held = columns.get(INODE).is_some_and(|inode| *inode != CLOSED);
+        (is_held && is(LOCAL, client) && is(REMOTE, server)).then(|| columns.get(USER)?.parse().ok())?
     })
 }
 
@@ -87,6 +91,8 @@ mod tests {
         assert_eq!(user_of(&table, at(4000), at(80)), Some(1000));
         assert_eq!(user_of(&table, at(4001), at(80)), None);
         assert_eq!(user_of("", at(4000), at(80)), None);
+        let closed = format!("head\n{}", row(4000, 80, 0).replace("0 5 1", "0 0 1"));
+        assert_eq!(user_of(&closed, at(4000), at(80)), None, "nobody holds it: it is nobody's");
     }
 
     #[test]

@@ -241,7 +241,7 @@ impl Visit {
             FromPage::Say { text } => self.say(&text, received_nanos)?,
             FromPage::Choose { object } => self.choose(ObjectId(object), received_nanos, false)?,
             FromPage::Listen { rate, held } => self.begin_listening(rate, held)?,
-            FromPage::Listened => self.end_listening(),
+            FromPage::Listened => return Ok(self.end_listening()),
             FromPage::Heard { number, text, sure } => self.say_heard(number, text, sure, received_nanos)?,
             FromPage::Aloud { on } => return Ok(self.hear_robots(on)),
             FromPage::Sounded { turn } => {

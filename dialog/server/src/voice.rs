@@ -25,6 +25,10 @@ pub use mouth::Mouth;
 
 use crate::{DialogError, page::Line};
 
+/// The most ears at once: those of all pages, and some that are still at what a page sent before it left. Each has a place on
+/// the bus.
+const MOST_EARS: usize = 24;
+
 /// Settings of voice.
 #[derive(Clone, Debug)]
 pub struct VoiceConfig {
@@ -80,6 +84,8 @@ pub struct Voice {
     mouth: Arc<Mouth>,
     /// Pages that want to hear robots.
     hearers: Arc<AtomicUsize>,
+    /// Ears at work.
+    ears: Arc<AtomicUsize>,
 }
 
 /// The engines that could be opened.
@@ -91,7 +97,7 @@ struct Opened {
     speaks: bool,
 }
 
-/// A page that hears what robots say, while it lives.
+/// One that is counted while it lives: a page that hears what robots say, or an ear.
 pub struct Hearer(Arc<AtomicUsize>);
 
 impl Drop for Hearer {
@@ -153,7 +159,15 @@ impl Voice {
             opening: Mutex::default(),
             mouth,
             hearers: Arc::default(),
+            ears: Arc::default(),
         })
+    }
+
+    /// One more ear, unless there are too many.
+    fn ear(&self) -> Option<Hearer> {
+        let more = |ears: usize| (ears < MOST_EARS).then_some(ears + 1);
+        self.ears.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more).ok()?;
+        Some(Hearer(Arc::clone(&self.ears)))
     }
 
     /// Opens the engines, if nobody has: that takes a second.

@@ -149,7 +149,9 @@ fn role(service: &Service, parameters: &Parameters, ends: Ends) -> Option<Role> 
     if let Some(number) = service.people.find(given) {
         return Some(Role::Seated(number));
     }
-    let is_own_user = || service.admits_own_user && is_same_user(ends.client, ends.server);
+    // What comes by a proxy or a tunnel comes from a program of this user, or of root, whoever sent it.
+    let is_direct = service.hosts.is_empty();
+    let is_own_user = || service.admits_own_user && is_direct && is_same_user(ends.client, ends.server);
     (token::admits(&service.token, given) || given.is_none() && is_own_user()).then_some(Role::Participant)
 }
 
@@ -206,7 +208,8 @@ async fn socket(
         Role::Participant | Role::Wizard => PersonSeats::stranger(key),
     };
     let Service { hub, host, limits, seat, .. } = service;
-    upgrade.max_message_size(LONGEST_MESSAGE).on_upgrade(move |socket| async move {
+    // A frame is read as a whole before its message is found too long.
+    upgrade.max_frame_size(LONGEST_MESSAGE).max_message_size(LONGEST_MESSAGE).on_upgrade(move |socket| async move {
         match (host, role, seat) {
             (Host::Live(live), Role::Wizard, Some(seat)) => {
                 seat::decide(hub, live.talk, seat.told, socket, limits).await;

@@ -1,6 +1,9 @@
 //! What answers clients: at most one game, which any of them can start anew. Knows no sockets.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::PathBuf,
+    sync::{Arc, atomic::AtomicBool},
+};
 
 use cohabit_cdf::{BodyRequest, Catalog, Status};
 use cohabit_engine::SessionPlan;
@@ -36,6 +39,8 @@ pub struct Arena {
     renderer: SharedRenderer,
     state: State,
     games: u32,
+    /// Becomes true when no more commands are to be carried out.
+    stop: Arc<AtomicBool>,
 }
 
 /// What there is to play.
@@ -61,7 +66,19 @@ impl Arena {
     #[must_use]
     pub fn new(settings: Settings, renderer: Box<dyn Renderer>) -> Self {
         let why = "no mission was launched yet: send a CDF first".to_owned();
-        Self { settings, renderer: SharedRenderer::new(renderer), state: State::Idle(why), games: 0 }
+        Self {
+            settings,
+            renderer: SharedRenderer::new(renderer),
+            state: State::Idle(why),
+            games: 0,
+            stop: Arc::default(),
+        }
+    }
+
+    /// The same, which carries out no more commands once `stop` is true.
+    #[must_use]
+    pub fn ending_at(self, stop: Arc<AtomicBool>) -> Self {
+        Self { stop, ..self }
     }
 
     /// Answers a message; a mission has no answer. `first` says whether it is the first of its connection.
@@ -71,7 +88,10 @@ impl Arena {
                 self.launch("CDF", &cdf);
                 None
             }
-            Message::Batch(batch) => Some(self.reply(|game| game.play(&batch)).json()),
+            Message::Batch(batch) => {
+                let stop = Arc::clone(&self.stop);
+                Some(self.reply(|game| game.play(&batch, &stop)).json())
+            }
             Message::Malformed(problem) => {
                 tracing::warn!("a message was refused: {problem}");
                 let status = Status::IncorrectActionFormat;

@@ -2,7 +2,10 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::Arc,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use cohabit_bus::{
@@ -134,12 +137,12 @@ impl Game {
         Ok(game)
     }
 
-    /// Carries a batch out, in order, up to the first command that fails.
+    /// Carries a batch out, in order, up to the first command that fails, or `stop`.
     ///
     /// # Errors
     /// [`GameError`]; the game is over then.
-    pub fn play(&mut self, batch: &[Value]) -> Result<Reply, GameError> {
-        let Batch { end, last_action, around } = self.run(batch)?;
+    pub fn play(&mut self, batch: &[Value], stop: &AtomicBool) -> Result<Reply, GameError> {
+        let Batch { end, last_action, around } = self.run(batch, stop)?;
         let (status, detail) = &end;
         if !status.is_success() {
             tracing::info!("{status:?}: {detail}");
@@ -161,8 +164,8 @@ impl Game {
         Ok(Reply::new(end, last_action, self.world(), BODY, pictures))
     }
 
-    /// Carries out the commands of a batch up to the first that fails.
-    fn run(&mut self, commands: &[Value]) -> Result<Batch, GameError> {
+    /// Carries out the commands of a batch up to the first that fails, or `stop`.
+    fn run(&mut self, commands: &[Value], stop: &AtomicBool) -> Result<Batch, GameError> {
         let mut batch =
             Batch { end: done("there was nothing to do"), last_action: LastAction::default(), around: None };
         if commands.len() > MOST_COMMANDS {
@@ -170,6 +173,10 @@ impl Game {
             return Ok(Batch { end: (Status::IncorrectActionFormat, problem), ..batch });
         }
         for (index, value) in commands.iter().enumerate() {
+            if stop.load(Ordering::Relaxed) {
+                batch.end = (Status::ArenaUnavailable, "the arena ends".to_owned());
+                break;
+            }
             let command = Command::read(index, value, self.world().catalog().rooms());
             batch.end = match &command {
                 Ok(command) => self.carry_out(index, command)?,

@@ -28,6 +28,17 @@ fn pictures(reply: &Value, field: &str) -> Vec<Vec<[u8; 4]>> {
     reply[field].as_array().unwrap().iter().map(decode).collect()
 }
 
+#[test]
+fn an_arena_that_ends_carries_out_no_more_of_a_batch() {
+    let mut client = Client::new();
+    let stop = Arc::new(std::sync::atomic::AtomicBool::new(false));
+    client.arena = client.arena.ending_at(Arc::clone(&stop));
+    assert!(client.send(mission(json!([])).as_bytes()).is_none());
+    client.must(&["rotate 10"]);
+    stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    client.check("room Lab1", "ArenaUnavailable");
+}
+
 fn find<'a>(reply: &'a Value, instance: &str) -> &'a Value {
     let objects = reply["objects"].as_array().unwrap();
     objects.iter().find(|object| object["objectID"] == instance).unwrap_or_else(|| panic!("no {instance}"))

@@ -76,7 +76,7 @@ impl ArenaOptions {
             name: format!("{}_arena-{}", sessions::time(), std::process::id()),
             logs: logs.clone(),
         };
-        let mut arena = Arena::new(settings, games.rendering.start()?);
+        let mut arena = Arena::new(settings, games.rendering.start()?).ending_at(Arc::clone(&stop));
         if let Some(MissionFile { name, text }) = &mission {
             arena.launch(name, text);
         }

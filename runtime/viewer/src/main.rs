@@ -205,13 +205,15 @@ impl Tables {
 
 /// Becomes true when this process is asked to end; it ends with its supervisor, however that one ends.
 fn stop_on_request(supervisor: Option<i32>) -> anyhow::Result<Arc<AtomicBool>> {
-    use rustix::process::{Pid, Signal, set_parent_process_death_signal};
+    use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         signal_hook::flag::register(signal, Arc::clone(&stop)).context("signals")?;
     }
-    if supervisor.and_then(Pid::from_raw).is_some() {
+    if let Some(supervisor) = supervisor.and_then(Pid::from_raw) {
         set_parent_process_death_signal(Some(Signal::TERM)).context("ask to end with the supervisor")?;
+        // It may have ended before that was asked.
+        anyhow::ensure!(getppid() == Some(supervisor), "the supervisor is gone already");
     }
     Ok(stop)
 }

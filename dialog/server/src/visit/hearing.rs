@@ -35,16 +35,21 @@ impl Visit {
         let Some(hearing) = &mut self.hearing else { return Ok(()) };
         hearing.begin_again(rate)?;
         if held {
-            hearing.hold();
+            hearing.hold()?;
         }
         Ok(())
     }
 
     /// What was said is all. The ear stays, should more be said.
-    pub(super) fn end_listening(&mut self) {
-        if let Some(hearing) = &self.hearing {
-            hearing.finish();
-        }
+    pub(super) fn end_listening(&mut self) -> Vec<Message> {
+        let told = self.hearing.as_ref().map_or(Ok(()), Hearing::finish);
+        told.map_or_else(|problem| self.deafen(&problem), |()| Vec::new())
+    }
+
+    /// Listens no more, and says why.
+    fn deafen(&mut self, why: &str) -> Vec<Message> {
+        self.hearing = None;
+        vec![tell(&page::error(why)), tell(&page::deaf())]
     }
 
     /// Takes a piece of sound; what cannot be listened to ends the listening, and says why.
@@ -59,10 +64,7 @@ impl Visit {
         };
         match taken {
             Ok(note) => note.map(|note| tell(&page::error(note))).into_iter().collect(),
-            Err(problem) => {
-                self.hearing = None;
-                vec![tell(&page::error(&problem)), tell(&page::deaf())]
-            }
+            Err(problem) => self.deafen(&problem),
         }
     }
 
@@ -108,7 +110,8 @@ impl Visit {
     ) -> Result<(), String> {
         let Some((_, spoken)) = self.heard.take_if(|(heard, _)| *heard == number) else { return Ok(()) };
         if let Some(hearing) = &self.hearing {
-            hearing.part();
+            // Where it cannot be told, what is said next joins this.
+            let _ = hearing.part();
         }
         let Some(text) = text.as_deref().map(text::in_one_line) else { return Ok(()) };
         if text.trim().is_empty() || !text::is_within_limit(&text) {

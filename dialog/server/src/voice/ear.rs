@@ -34,6 +34,7 @@ const FASTEST: f64 = 1.4;
 const TOLD_AFTER_S: f64 = 3.0;
 
 const BEHIND: &str = "I cannot listen as fast as you speak; some of that was lost.";
+const TOO_MANY: &str = "I am still at what was said before: try again in a moment, or type.";
 
 /// Where a page's sound goes. Its thread ends when this is dropped.
 pub struct Hearing {
@@ -97,11 +98,15 @@ impl Hearing {
     /// Listens to a page that sends so many samples a second.
     ///
     /// # Errors
-    /// In a sentence for people, if that is another rate than is needed.
+    /// In a sentence for people, if that is another rate than is needed, or too much is listened to already.
     pub fn begin(at: EarAt, rate: u32) -> Result<Self, String> {
         check(rate)?;
+        let ear = at.voice.ear().ok_or(TOO_MANY)?;
         let (to, sent) = sync_channel(MOST_WAITING);
-        thread::spawn(move || at.listen(&sent));
+        thread::spawn(move || {
+            at.listen(&sent);
+            drop(ear);
+        });
         Ok(Self { to, began_nanos: monotonic_nanos(), samples: 0, is_behind: false })
     }
 
@@ -155,18 +160,36 @@ impl Hearing {
     }
 
     /// A key is held.
-    pub fn hold(&self) {
-        let _ = self.to.send(ToEar::Hold);
+    ///
+    /// # Errors
+    /// In a sentence for people, if the ear is so far behind that it cannot be told.
+    pub fn hold(&self) -> Result<(), String> {
+        self.tell(ToEar::Hold)
     }
 
     /// It is released.
-    pub fn finish(&self) {
-        let _ = self.to.send(ToEar::Finish);
+    ///
+    /// # Errors
+    /// As [`Hearing::hold`].
+    pub fn finish(&self) -> Result<(), String> {
+        self.tell(ToEar::Finish)
     }
 
     /// What was told last is done, or forgotten: what is said next does not go on with it.
-    pub fn part(&self) {
-        let _ = self.to.send(ToEar::Part);
+    ///
+    /// # Errors
+    /// As [`Hearing::hold`].
+    pub fn part(&self) -> Result<(), String> {
+        self.tell(ToEar::Part)
+    }
+
+    /// Never waits: whoever waited here for an ear that is behind would have all pages wait.
+    fn tell(&self, what: ToEar) -> Result<(), String> {
+        match self.to.try_send(what) {
+            Err(TrySendError::Full(_)) => Err(BEHIND.to_owned()),
+            // An ear that is gone has said why.
+            Ok(()) | Err(TrySendError::Disconnected(_)) => Ok(()),
+        }
     }
 }
 

@@ -25,6 +25,8 @@ use super::echo::Echo;
 const MOST_WAITING: usize = 6;
 /// What is longer than this is not said to its end, characters: it can be read.
 const LONGEST: usize = 400;
+/// The longest that a page's browser may take to say that, ns: a page that goes meanwhile does not tell that it ended.
+const LONGEST_NANOS: u64 = 60_000_000_000;
 /// Sayings of others are numbered beyond its own.
 const PASSED_ON: u64 = 1 << 48;
 /// What is said is made no more than so long before it sounds: who is hushed has then not been made in vain, and whoever
@@ -159,8 +161,8 @@ impl Mouth {
     pub fn note_own_voice(&self, text: Option<&str>, nanos: u64) {
         let mut echo = lock(&self.echo);
         match text {
-            // However long that takes: it is told when it ends.
-            Some(text) => echo.note(&spoken(text), nanos, u64::MAX / 2),
+            // It is told when it ends.
+            Some(text) => echo.note(&spoken(text), nanos, nanos.saturating_add(LONGEST_NANOS)),
             None => echo.cut(nanos),
         }
     }

@@ -57,7 +57,8 @@ impl Served {
         let address = listener.local_addr().unwrap();
         let hub = Arc::new(Hub::new(json!({}), vec![View::new(CameraId::Spectator(0))], Box::new(|| ())));
         let screening = Screening::new(&bus, Arc::clone(&hub), Arc::new(Catalog::builtin()), Vec::new()).unwrap();
-        let (host, hosts) = (Host::Recorded(Arc::new(screening)), vec!["tunnel.example".parse().unwrap()]);
+        let host = Host::Recorded(Arc::new(screening));
+        let hosts = if admits_own_user { Vec::new() } else { vec!["tunnel.example".parse().unwrap()] };
         let service = Service {
             hub: Arc::clone(&hub),
             host,

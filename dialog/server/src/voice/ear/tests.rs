@@ -231,9 +231,25 @@ fn who_goes_on_before_it_was_done_has_said_one_thing() {
     let [first, pause, second, rest] = parts();
     scene.speak(&[rest.clone(), first, pause].concat());
     assert_eq!(scene.said().heard.best(), "go to the main office");
-    scene.hearing.part();
+    scene.hearing.part().unwrap();
     scene.speak(&[second, rest].concat());
     assert_eq!(scene.said().heard.best(), "and open the door");
+}
+
+#[test]
+fn there_are_so_many_ears_and_no_more() {
+    let scene = Hall::new(fake::Reader::default(), |_| ());
+    let (to, _told) = unbounded_channel();
+    let at =
+        || EarAt { voice: Arc::clone(&scene.voice), talk: Arc::clone(&scene.room) as _, visitor: 1, to: to.clone() };
+    let others: Vec<Hearing> = std::iter::from_fn(|| Hearing::begin(at(), RATE).ok()).collect();
+    assert_eq!(others.len() + 1, crate::voice::MOST_EARS);
+    drop(others);
+    let again = std::iter::repeat_with(|| {
+        thread::sleep(Duration::from_millis(5));
+        Hearing::begin(at(), RATE).is_ok()
+    });
+    assert!(again.take(2_000).any(|begun| begun), "an ear that has ended makes room");
 }
 
 #[test]
