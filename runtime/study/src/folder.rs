@@ -16,12 +16,12 @@ mod error;
 use std::{
     collections::BTreeMap,
     fs::{self, DirBuilder, File, OpenOptions},
-    io::{self, Write as _},
+    io,
     os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _, PermissionsExt as _},
     path::{Path, PathBuf},
 };
 
-use cohabit_durable::{Readers, write_whole};
+use cohabit_durable::{LineFile, Readers, sync_folder, whole_lines, write_whole};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 pub use error::FolderError;
@@ -93,6 +93,8 @@ struct Marked<'a, T> {
 const PARTS: [&str; 5] = ["journals", "logs", "consent", "private", STUDY];
 /// Where the study's own files are.
 const STUDY: &str = "study";
+/// What is locked by who holds the folder.
+const LOCK: &str = "private/lock";
 /// Tables that are written anew from the journals.
 const TABLES: [&str; 2] = ["participants.csv", "answers.csv"];
 /// What says that a folder is of a dry run.
@@ -138,17 +140,21 @@ impl Folder {
     fn take(path: &Path, study: &BTreeMap<String, String>) -> Result<Self, FolderError> {
         make(path)?;
         let path = path.canonicalize().map_err(|source| failed(path, source))?;
+        let copies = path.join(STUDY);
+        // What is there before anybody has held the folder is somebody's own.
+        if copies.is_dir() && !path.join(LOCK).exists() && !names(&copies)?.is_empty() {
+            return Err(FolderError::Foreign { path: copies });
+        }
         PARTS.iter().try_for_each(|part| make(&path.join(part)))?;
         let folder = Self::lock(&path)?;
         let has_participants = !folder.places()?.is_empty();
         if !has_participants {
             // A file that the study names no more would count as one of its world packs' files.
-            let copies = path.join(STUDY);
             fs::remove_dir_all(&copies).map_err(|source| failed(&copies, source))?;
             make(&copies)?;
         }
         for (file, text) in study {
-            let copy = path.join(STUDY).join(file);
+            let copy = copies.join(file);
             match fs::read_to_string(&copy) {
                 Ok(known) if known == *text => {}
                 _ if has_participants => return Err(FolderError::OtherStudy { path, file: file.clone() }),
@@ -179,7 +185,7 @@ impl Folder {
     }
 
     fn lock(path: &Path) -> Result<Self, FolderError> {
-        let file = path.join("private/lock");
+        let file = path.join(LOCK);
         let opened = OpenOptions::new().write(true).create(true).truncate(false).mode(0o600).open(&file);
         let lock = opened.map_err(|source| failed(&file, source))?;
         match lock.try_lock() {
@@ -388,11 +394,13 @@ impl Folder {
     fn append(&self, name: &str, line: &impl Serialize) -> Result<(), FolderError> {
         let path = self.path.join(name);
         let write = || {
-            let mut bytes = serde_json::to_vec(&self.marked(line))?;
-            bytes.push(b'\n');
-            let mut file = OpenOptions::new().append(true).create(true).mode(0o600).open(&path)?;
-            file.write_all(&bytes)?;
-            file.sync_data()
+            let mut options = OpenOptions::new();
+            let file = options.read(true).write(true).create(true).truncate(false).mode(0o600).open(&path)?;
+            let (mut lines, _) = LineFile::new(path.clone(), file)?;
+            // What a crash left of a line would take this one along.
+            lines.drop_rest()?;
+            lines.append(&self.marked(line))?;
+            sync_folder(&path)
         };
         write().map_err(|source| failed(&path, source))
     }
@@ -412,9 +420,12 @@ impl Folder {
 }
 
 fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FolderError> {
-    match fs::read_to_string(path) {
+    match fs::read(path) {
         // A last line that was cut off is none.
-        Ok(text) => Ok(text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()),
+        Ok(bytes) => {
+            let lines = whole_lines(&bytes).split(|byte| *byte == b'\n');
+            Ok(lines.filter_map(|line| serde_json::from_slice(line).ok()).collect())
+        }
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
         Err(source) => Err(failed(path, source)),
     }

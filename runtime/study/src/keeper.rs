@@ -66,6 +66,11 @@ pub fn keep(registry: &Mutex<Registry>, player: &mut dyn Player, most_sessions: 
     }
     // Whoever does not end is ended.
     state.ending.clear();
+    // Who has withdrawn is removed now: the study may never go on.
+    for place in state.participants.keys().copied().collect::<Vec<_>>() {
+        state.remove_withdrawn(place);
+    }
+    write_tables(&state);
 }
 
 /// A study's state; what a panic left of it is whole, since changes are written down before they are made.

@@ -6,7 +6,8 @@ use crate::{
     design::Study,
     folder::{Folder, FolderError, Note},
     journal::Journal,
-    progress::Progress,
+    plan::pseudonym,
+    progress::{Phase, Progress},
 };
 
 /// All that a study's folder has of its participants, but for logs.
@@ -32,10 +33,14 @@ impl Records {
     pub fn read(study: Study, folder: &Path) -> Result<Self, FolderError> {
         let journals = Folder::journals_in(folder)?;
         let read = journals.iter().map(|path| Journal::read(path)).collect::<Result<Vec<_>, _>>()?;
+        let progress: Vec<Progress> = read.into_iter().flatten().collect();
+        if let Some(leaving) = progress.iter().find(|one| *one.phase() == Phase::Withdrawn) {
+            return Err(FolderError::Leaving { path: folder.to_owned(), pseudonym: pseudonym(leaving.plan().place) });
+        }
         let withdrawn = Folder::withdrawals_in(folder)?;
         Ok(Self {
             study,
-            progress: read.into_iter().flatten().collect(),
+            progress,
             withdrawn: withdrawn.into_iter().map(|one| one.participant).collect(),
             notes: Folder::notes_in(folder)?,
             is_synthetic: Folder::is_synthetic_in(folder),

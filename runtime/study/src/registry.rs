@@ -352,7 +352,12 @@ impl Registry {
             Some(place) => place,
             None => {
                 self.check_room()?;
-                self.reserve(Some(newcomer.token.clone()))?
+                let place = self.reserve(Some(newcomer.token.clone()))?;
+                // It is theirs, also if what follows cannot be written down and they agree again.
+                if let Some(newcomer) = self.newcomers.get_mut(index) {
+                    newcomer.place = Some(place);
+                }
+                place
             }
         };
         let at_ms = self.clock.now_ms();

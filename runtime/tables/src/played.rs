@@ -7,7 +7,7 @@ use std::{
 };
 
 use cohabit_cdf::{Action, BodyKind, Catalog, Mission, Status, mission};
-use cohabit_record::{DialogEntry, EventEntry, Log, LogError, Movement};
+use cohabit_record::{Branch, DialogEntry, EventEntry, Log, LogError, Movement};
 use cohabit_world::DT_NANOS;
 
 /// The body that is spoken to.
@@ -25,6 +25,8 @@ pub struct Played {
     pub(crate) goals: Vec<Reached>,
     /// How its bodies moved, if that was worked out.
     pub(crate) movement: Option<Movement>,
+    /// Whether another one that was read with it goes on from its end.
+    pub(crate) is_continued: bool,
 }
 
 /// Why a log has no tables.
@@ -118,6 +120,7 @@ impl Played {
             let folder = path.parent().and_then(Path::file_name).unwrap_or_default();
             played.name = format!("{}/{}", folder.to_string_lossy(), played.name);
         }
+        carry_on(&mut all);
         Ok(all)
     }
 
@@ -131,7 +134,7 @@ impl Played {
         let mission = read.map_err(|problems| PlayedError::Mission { name: name.to_owned(), problems })?.mission;
         let (turns, turn_of) = turns(&log.dialog);
         let (actions, goals) = (actions(&log, &turn_of), goals(&mission, &log.events));
-        Ok(Self { name: name.to_owned(), log, mission, turns, actions, goals, movement: None })
+        Ok(Self { name: name.to_owned(), log, mission, turns, actions, goals, movement: None, is_continued: false })
     }
 
     /// The same, knowing how its bodies moved, if there was a person whom a robot could meet. A log has to be played again for that:
@@ -217,9 +220,13 @@ fn turns(dialog: &[DialogEntry]) -> (Vec<Turn>, BTreeMap<u64, u64>) {
         if entry.kind == "Pointed" {
             continue;
         }
-        let newest = turns.last().map(|turn| turn.number);
+        // What a mind says of its own accord can answer only what its own body was told, and what nobody asked for is of no turn.
+        let is_asked = entry.turn > 0;
+        let newest = turns.iter().rfind(|turn| is_asked || turn.body == entry.body).map(|turn| turn.number);
         let Some(number) = turn_of.get(&entry.turn).copied().or(newest) else { continue };
-        turn_of.entry(entry.turn).or_insert(number);
+        if is_asked {
+            turn_of.entry(entry.turn).or_insert(number);
+        }
         if let Some(turn) = turns.iter_mut().rfind(|turn| turn.number == number) {
             note(turn, entry);
         }
@@ -269,6 +276,30 @@ fn actions(log: &Log, turn_of: &BTreeMap<u64, u64>) -> Vec<Deed> {
     .collect()
 }
 
+/// A session that goes on from the end of another one of the same participant has what came about there: its log does not tell it again.
+fn carry_on(all: &mut [Played]) {
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    order.sort_by_key(|at| all[*at].log.session.branched.as_ref().map_or(0, |from| from.tick));
+    for at in order {
+        let session = &all[at].log.session;
+        let Some(Branch { run, tick, .. }) = session.branched.clone() else { continue };
+        let is_before = |one: &Played| {
+            let own = &one.log.session;
+            run != 0
+                && own.run == run
+                && one.ticks() == tick
+                && own.participant.is_some()
+                && own.participant == session.participant
+        };
+        let Some(before) = all.iter().position(is_before) else { continue };
+        all[before].is_continued = true;
+        let mut events = all[before].log.events.clone();
+        events.append(&mut all[at].log.events);
+        all[at].goals = goals(&all[at].mission, &events);
+        all[at].log.events = events;
+    }
+}
+
 fn goals(mission: &Mission, events: &[EventEntry]) -> Vec<Reached> {
     let reached = |goal: &cohabit_cdf::goal::Goal| {
         let of_goal =
@@ -283,4 +314,26 @@ fn goals(mission: &Mission, events: &[EventEntry]) -> Vec<Reached> {
         }
     };
     mission.goals.iter().map(reached).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn what_nobody_asked_for_is_of_no_turn() {
+        let entry = |kind: &str, turn: u64, body: u32, sent_nanos: u64| -> DialogEntry {
+            let entry = json!({"kind": kind, "turn": turn, "body": body, "step": 0, "sent_nanos": sent_nanos,
+                "stamps": [0, 0, 0, 0, 0], "text": "words"});
+            serde_json::from_value(entry).unwrap()
+        };
+        // A helper speaks of its own accord before the robot that was spoken to answers.
+        let dialog = [entry("Utterance", 1, 0, 10), entry("Reply", 0, 2, 20), entry("Reply", 1, 0, 60)];
+        let (turns, turn_of) = turns(&dialog);
+        assert_eq!((turns[0].told, turns[0].replies.len()), ((10, Some(60)), 1));
+        assert_eq!(turn_of, BTreeMap::from([(1, 1)]));
+    }
 }

@@ -78,7 +78,9 @@ impl Sessions {
             .arg(&wanted.log)
             // Each page has a port of its own: a name is one at any.
             .args(hosts.iter().map(|host| format!("--host={}", parts(host).0)));
-        let world = |argument: &&String| ["--seed=", "--body="].iter().any(|flag| argument.starts_with(flag));
+        // What the log that it goes on from has.
+        let world =
+            |argument: &&String| ["--seed=", "--body=", "--camera="].iter().any(|flag| argument.starts_with(flag));
         match point {
             Some(point) => command.arg(&point.argument).args(wanted.arguments.iter().filter(|one| !world(one))),
             // A seed among the arguments counts, which the study gives none then.

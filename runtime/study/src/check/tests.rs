@@ -156,6 +156,9 @@ fn a_study_keeps_its_world_packs_and_plays_their_missions() {
     assert_eq!(world.arguments(), ["--world=packs/my-lab".to_owned(), format!("--world-hash={}", world.id.digest)]);
     assert!(study.files.contains_key("packs/my-lab/layouts/Workshop.toml"), "{:?}", study.files.keys());
     assert_eq!(crate::assign(&study, 1).world, study.world_ids());
+    let at_home = STUDY.replacen("[\"soda\", \"cereal\"]", "[\"soda\", \"make_tea\"]", 1);
+    let study = check("world", &at_home.replacen("seed = 1", "seed = 1\nworld = [\"homes\"]", 1)).unwrap();
+    assert!(study.files.contains_key("homes/world.toml"), "{:?}", study.files.keys());
     for (text, part) in [
         (text.clone(), "there is no mission clean_wrench"),
         (with("[\"../my-lab\"]"), "it lies outside the folder of the study"),

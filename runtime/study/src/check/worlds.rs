@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path};
 
-use cohabit_cdf::{WorldData, WorldPack, mission::Pointer};
+use cohabit_cdf::{WorldData, WorldPack, mission::Pointer, world_pack};
 
 use super::Checking;
 use crate::{design::StudyWorld, written::Words};
@@ -22,8 +22,7 @@ impl Checking<'_, '_> {
                     packs.push(pack);
                 }
                 Err(problem) => {
-                    let remedy =
-                        "name the folder of a world pack in the folder of the study; `cohabit check --world` says more";
+                    let remedy = "name a world pack that is built in, or the folder of one in the folder of the study; `cohabit check --world` says more";
                     self.findings.add(name.span(), &at.item(index), problem, remedy);
                 }
             }
@@ -39,12 +38,14 @@ impl Checking<'_, '_> {
         worlds
     }
 
-    /// The pack in a folder of the study, or what is wrong with it.
+    /// The pack in a folder of the study, or the one that is built in, where there is no such folder; or what is wrong with it.
     fn pack(&mut self, folder: &str) -> Result<WorldPack, String> {
         if !Path::new(folder).components().all(|part| matches!(part, Component::Normal(_))) {
             return Err(format!("`{folder}`: it lies outside the folder of the study"));
         }
-        let files = self.program.pack_files(&self.folder.join(folder))?;
+        let path = self.folder.join(folder);
+        let builtin = if path.exists() { None } else { world_pack::builtin_files(folder) };
+        let files = builtin.map_or_else(|| self.program.pack_files(&path), Ok)?;
         for file in &files {
             let name = format!("{folder}/{}", file.path);
             let text = str::from_utf8(&file.bytes);

@@ -54,6 +54,25 @@ pub enum FolderError {
         /// Who is there.
         known: String,
     },
+    /// Somebody has withdrawn, and their data are still there.
+    #[error(
+        "{path}: {pseudonym} has withdrawn, and their data are not removed yet: wait until their session has ended, or run \
+         `cohabit study withdraw {pseudonym} --folder {path}`"
+    )]
+    Leaving {
+        /// The folder.
+        path: PathBuf,
+        /// Who.
+        pseudonym: String,
+    },
+    /// What is no copy of a study is where that would be.
+    #[error(
+        "{path} holds files that no study put there, and copies of the study's would replace them: choose another `--folder`"
+    )]
+    Foreign {
+        /// Where they are.
+        path: PathBuf,
+    },
     /// Programs played those whose data are in it.
     #[error(
         "{path} holds a dry run (see {path}/synthetic.json), which is never mixed with people's data: choose another folder, or \

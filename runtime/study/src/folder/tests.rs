@@ -68,6 +68,34 @@ fn who_withdraws_from_a_pair_takes_its_sessions_along_and_none_of_the_partners_a
 }
 
 #[test]
+fn what_a_crash_left_of_a_line_takes_no_other_along() {
+    let scratch = Scratch::new("torn-line");
+    let folder = with_participants(&scratch);
+    let notes = folder.path().join("notes.jsonl");
+    let mut torn = fs::read(&notes).unwrap();
+    torn.extend_from_slice(b"{\"at_ms\":3,\"text\":\"gr\xc3");
+    fs::write(&notes, torn).unwrap();
+    assert_eq!(folder.notes().unwrap().len(), 3);
+    folder.note(&Note { at_ms: 4, participant: None, text: "it stops".into() }).unwrap();
+    let texts: Vec<String> = folder.notes().unwrap().into_iter().map(|note| note.text).collect();
+    assert_eq!(texts, ["hesitates", "hesitates", "it rains", "it stops"]);
+}
+
+#[test]
+fn files_that_no_study_put_there_are_never_replaced() {
+    let scratch = Scratch::new("own-folder");
+    let own = scratch.path("data").join("study");
+    fs::create_dir_all(&own).unwrap();
+    fs::write(own.join("draft.md"), "mine").unwrap();
+    for path in [scratch.path("data"), own.clone()] {
+        fs::set_permissions(path, fs::Permissions::from_mode(0o700)).unwrap();
+    }
+    let refused = Folder::begin(&scratch.path("data"), &study("a study")).unwrap_err();
+    assert!(matches!(refused, FolderError::Foreign { .. }), "{refused}");
+    assert_eq!(fs::read_to_string(own.join("draft.md")).unwrap(), "mine");
+}
+
+#[test]
 fn a_folder_has_one_study_and_one_holder() {
     let scratch = Scratch::new("folder");
     let path = scratch.path("data");

@@ -453,6 +453,23 @@ fn who_withdraws_while_playing_leaves_nothing_once_the_session_has_ended() {
 }
 
 #[test]
+fn who_withdraws_as_the_study_ends_leaves_nothing_and_is_exported_by_nobody() {
+    let mut case = Case::new("withdraw-at-the-end");
+    let place = case.enrol();
+    case.apply(place, &Event::GoesOn);
+    case.look_after(1);
+    case.apply(place, &Event::Withdrew);
+    let (study, data) = (case.registry().study.clone(), case.scratch.path("data"));
+    let refused = crate::records::Records::read(study.clone(), &data).unwrap_err().to_string();
+    assert!(refused.contains("P01 has withdrawn") && refused.contains("cohabit study withdraw P01"), "{refused}");
+    let (registry, stop) = (Mutex::new(case.registry.take().unwrap()), AtomicBool::new(true));
+    keep(&registry, &mut case.stage, 1, &stop);
+    let left: Vec<_> = files(&data).into_iter().filter(|name| name.starts_with("P01")).collect();
+    assert_eq!(left, [] as [String; 0]);
+    assert_eq!(crate::records::Records::read(study, &data).unwrap().withdrawn, ["P01"]);
+}
+
+#[test]
 fn a_participants_page_learns_nothing_about_conditions() {
     let mut case = Case::new("blind");
     let place = case.enrol();

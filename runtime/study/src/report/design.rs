@@ -75,6 +75,9 @@ fn methods(study: &Study) -> String {
             MissionOrder::Fixed => "in the same order by all",
             MissionOrder::Random if study.pairing.is_some() => "in a random order for each pair",
             MissionOrder::Random => "in a random order for each participant",
+            MissionOrder::Balanced if within > 1 && study.assignment == Assignment::BlockRandom => {
+                "in orders in which each stands at each position as often; the condition under which each was played was random"
+            }
             MissionOrder::Balanced => {
                 "in orders in which each meets each condition, and stands at each position, as often"
             }

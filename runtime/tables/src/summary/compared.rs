@@ -50,12 +50,19 @@ pub(crate) struct Group {
 impl Compared {
     /// Sessions by the conditions asked for; by all settings in which they differ, if none are.
     pub fn new(played: &[Played], by: &[String]) -> Result<Self, SummaryError> {
-        let own: Vec<Conditions> = played.iter().map(conditions).collect();
-        let names = played.iter().map(|played| played.log.session.participant.clone().filter(|name| !name.is_empty()));
+        // What came of a session that was interrupted is in the one that goes on from it.
+        let kept: Vec<usize> = (0..played.len()).filter(|at| !played[*at].is_continued).collect();
+        let whole = || kept.iter().map(|at| &played[*at]);
+        let own: Vec<Conditions> = whole().map(conditions).collect();
+        let names = whole().map(|played| played.log.session.participant.clone().filter(|name| !name.is_empty()));
         let by = if by.is_empty() { differing(played, &own) } else { by.to_vec() };
-        let participants = names.zip(played).map(|(name, played)| (name, played.name.as_str()));
+        let participants = names.zip(whole()).map(|(name, played)| (name, played.name.as_str()));
+        let mut outcomes = Outcome::all(played);
+        for outcome in &mut outcomes {
+            outcome.values = kept.iter().map(|at| outcome.values[*at]).collect();
+        }
         let unit = unit(played);
-        Ok(Self { unit, ..Self::of(own, participants.collect(), Outcome::all(played), &by)? })
+        Ok(Self { unit, ..Self::of(own, participants.collect(), outcomes, &by)? })
     }
 
     /// Sessions of these conditions, participants (by name, or else by the session's name) and outcomes.
