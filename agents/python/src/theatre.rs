@@ -253,7 +253,11 @@ impl Theatre {
     /// Has bodies do something, each one thing, until all have ended, or for so many ticks.
     pub fn carry_out(&mut self, requests: Vec<Request>, ticks: Option<u64>) -> Vec<Outcome> {
         let waits = requests.is_empty() && self.pending.is_empty();
-        requests.into_iter().for_each(|request| self.command(request));
+        for request in requests {
+            // It takes the place of what the body was doing: nobody asks any more what came of that.
+            self.pending.retain(|one| one.body != request.body);
+            self.command(request);
+        }
         let mut ends = Vec::new();
         let most = ticks.unwrap_or(if waits { WAIT_TICKS } else { PATIENCE_TICKS });
         for _ in 0..most {

@@ -294,3 +294,24 @@ def test_bad_arguments_are_named() -> None:
     ]:
         with pytest.raises(ValueError, match=problem):
             cohabit.Env(**arguments).reset()
+
+
+def test_a_command_in_the_place_of_another_is_told_of_alone() -> None:
+    env = cohabit.Env(planes=(), ticks_per_step=10)
+    env.reset(seed=0)
+    env.act(GoTo("Lab1"))
+    *_, info = env.act(PickUp("zzyzx"))
+    assert info["status"] == "InvalidObjectClass", info["detail"]
+    env.act(GoTo("Lab1"))
+    *_, info = env.act(GoTo("MainOffice"))
+    assert info["status"] == "", "it is under way"
+
+
+def test_a_mission_has_robots_of_its_own() -> None:
+    mission = json.loads(builtin("make_cereal"))
+    robots = [{"name": "TAM_1", "roomLocation": ["BreakRoom"]}, {"name": "TAM_2", "roomLocation": ["Lab1"]}]
+    mission["scene"]["simbot_init"] = robots
+    env = cohabit.ParallelEnv(mission, bodies=(), planes=("color",), size=24)
+    observations, _ = env.reset(seed=0)
+    assert len(observations) == 2
+    assert all(one["color"].shape == (24, 24, 3) for one in observations.values())

@@ -56,6 +56,21 @@ def test_a_suite_is_parted(made: cohabit.Suite) -> None:
     }
 
 
+def test_a_mission_with_words_of_several_people_is_in_one_part(made: cohabit.Suite, tmp_path: Path) -> None:
+    sessions = {
+        one.id: {
+            "CDF": json.loads(one.text),
+            "human_annotations": [{"instructions": [{"instruction": words}]} for words in ("Go.", "Walk.", "Move.")],
+        }
+        for one in made
+    }
+    (tmp_path / "arena.json").write_text(json.dumps(sessions))
+    parts = cohabit.suite(tmp_path / "arena.json").split(share=0.2, seed=1)
+    assert sum(len(part) for part in parts.values()) == 3 * len(made)
+    texts = [{one.text for one in part} for part in parts.values()]
+    assert len(set().union(*texts)) == sum(map(len, texts))
+
+
 def test_missions_are_sampled_by_the_seed(made: cohabit.Suite) -> None:
     env = cohabit.Env(made, planes=(), instruction=True)
     played = []

@@ -227,3 +227,16 @@ def test_a_choice_that_there_is_not_changes_no_world() -> None:
     assert [envs.stage.digest(place) for place in range(2)] == before
     *_, infos = envs.step(np.array([[CHOICES.index("pick_up"), -1]] * 2))
     assert list(infos["status"]) == ["InvalidObjectClass"] * 2
+
+
+def test_what_a_refused_reset_left_is_not_taken_for_what_was_to_be() -> None:
+    envs = cohabit.VectorEnv("make_cereal", 2, planes=())
+    envs.reset(seed=0)
+    with pytest.raises(ValueError, match="warm_cofee"):
+        envs.reset(options={"mission": ["cold_soda", "warm_cofee"]})
+    _, infos = envs.reset(seed=0, options={"mission": ["cold_soda", "warm_coffee"]})
+    for place, name in enumerate(["cold_soda", "warm_coffee"]):
+        assert infos["mission"][place] == f"{name}.json"
+        single = cohabit.Env(name, planes=())
+        single.reset(seed=place)
+        assert envs.stage.digest(place) == single.office.world.digest(), name

@@ -88,6 +88,7 @@ pub(crate) struct SeenEntry {
     color: [u8; 3],
     #[serde(skip_serializing_if = "Option::is_none")]
     instance: Option<String>,
+    /// What people call it: no id of a class.
     class: String,
     pixels: u32,
     /// Its first column and row, and those after its last.

@@ -111,10 +111,13 @@ class Suite(Sequence[Mission]):
         that share of the missions; parts without any are left out."""
         if not 0.01 <= share <= 0.2:
             raise ValueError(f"a share of {share}: from 0.01 to 0.2")
-        facets = [(one.type, one.layout, list(one.rooms), list(one.things)) for one in self.missions]
+        # A mission for which several annotators have words is in one part, with all of them.
+        once = {one.text: one for one in self.missions}
+        facets = [(one.type, one.layout, list(one.rooms), list(one.things)) for one in once.values()]
+        part_of = dict(zip(once, _native.part_missions(facets, share, seed)))
         parts: dict[str, list[Mission]] = {}
-        for mission, part in zip(self.missions, _native.part_missions(facets, share, seed)):
-            parts.setdefault(part, []).append(mission)
+        for mission in self.missions:
+            parts.setdefault(part_of[mission.text], []).append(mission)
         return {part: Suite(missions, self.world) for part, missions in sorted(parts.items())}
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:

@@ -130,14 +130,15 @@ class Guest:
         for _, action in actions:
             self._pending = peer.act(action)
         last = self.session.state().tick + (ticks or (_LONG_TICKS if self._pending else _WAIT_TICKS))
+        outcome: Optional[_native.Outcome] = None
         while True:
             if lock_step:
                 tick = self.session.step(max(1, last - self.session.state().tick))
             else:
                 time.sleep(1 / 60)
                 tick = self.session.state().tick
-            outcome = self._pending.poll() if self._pending else None
-            if outcome is not None:
+            if self._pending is not None and (outcome := self._pending.poll()) is not None:
+                # It is told as the step ends, however early it came.
                 self._pending = None
                 if ticks is None:
                     return [outcome]
@@ -202,6 +203,7 @@ class Office:
         episode: what was in its slots, in its pictures (if they have ids), or in its hand.
     :param world: the folder of a world pack, or several in their order: floor plans, objects, devices and missions beside the
         built-in ones. Left out, it is that of the suite that is played.
+    :param many: whether all bodies are played, those of the mission too.
     """
 
     def __init__(
@@ -220,6 +222,7 @@ class Office:
         instruction: bool = False,
         knows: str = "everything",
         world: Packs = (),
+        many: bool = False,
     ) -> None:
         check_knows(knows)
         self.packs = packs_of(mission, world)
@@ -243,7 +246,11 @@ class Office:
         self.world: World
         if session is None:
             name, text = mission_text(*self._played, packs=self.packs)
-            cameras = self.sensing.cameras(1 + len(bodies), render)
+            count = 1 + len(bodies)
+            if many:
+                # All bodies are played, and a mission may have several robots of its own.
+                count = len(_native.Stage(name, text, list(bodies), [], 0, threads, randomize, self.packs).kinds())
+            cameras = self.sensing.cameras(count, render)
             self.world = _native.Stage(name, text, list(bodies), cameras, 0, threads, randomize, self.packs)
             self._told(name, text)
         else:

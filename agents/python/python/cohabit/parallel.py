@@ -75,6 +75,7 @@ class ParallelEnv(Base):  # type: ignore[misc, unused-ignore]
             instruction=instruction,
             knows=knows,
             world=world,
+            many=True,
         )
         self.possible_agents = [f"{kind}_{number}" for number, kind in enumerate(self.office.kinds)]
         self.agents: list[str] = []

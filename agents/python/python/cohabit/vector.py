@@ -93,7 +93,9 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         self._mission, self._randomize = mission, randomize
         self._played: list[MissionLike] = [mission[0] if isinstance(mission, Suite) else mission] * num_envs
         self._changed = [False] * num_envs
-        """Whether a world plays a mission on another layout or with another seed, for one episode."""
+        """Whether a world plays a mission on another layout or with another seed, for one episode; or was to begin, and may not have."""
+        self._coming = [False] * num_envs
+        """The same of the episode that is to begin."""
         named = mission_text(self._played[0], packs=self._packs)
         self._names = [named[0]] * num_envs
         self._instructions = [instruction_in(self._played[0], named[1])] * num_envs
@@ -178,7 +180,7 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         if len(actions) != self.num_envs:
             raise ValueError(f"{len(actions)} actions for {self.num_envs} environments: one for each")
         plain = [action.plain(self._names_in(place), 0) for place, action in enumerate(actions)]
-        return self._step(lambda anew: self._note(self.stage.act(plain, anew)))
+        return self._step(lambda anew: self._note(self.stage.act(plain, anew), anew))
 
     def _check_can_step(self, method: str) -> None:
         if not self._has_begun:
@@ -271,11 +273,13 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         self, choices: npt.NDArray[np.int64], steps: npt.NDArray[np.bool_], beginnings: list[Beginning]
     ) -> Outcomes:
         """One turn of all worlds: some begin anew, of the others those step that are to."""
-        return self._note(self.stage.turn(choices.tobytes(), steps.tobytes(), beginnings))
+        return self._note(self.stage.turn(choices.tobytes(), steps.tobytes(), beginnings), beginnings)
 
-    def _note(self, told: Told) -> Outcomes:
-        """Has what came of a turn be the latest."""
+    def _note(self, told: Told, beginnings: list[Beginning]) -> Outcomes:
+        """Has what came of a turn, in which some worlds began anew, be the latest."""
         pages, statuses, details, endings = told
+        for place, _, _ in beginnings:
+            self._changed[place] = self._coming[place]
         self._latest = {
             name: np.ndarray(shape, dtype, pages[page], at) for name, page, at, shape, dtype in self._layout
         }
@@ -299,7 +303,8 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         if is_changed or self._changed[place] or mission is not self._played[place]:
             named = mission_text(mission, layout, own, packs=self._packs)
             self._names[place], self._instructions[place] = named[0], instruction_in(mission, named[1])
-        self._played[place], self._changed[place] = mission, is_changed
+        # Until it has begun: after what is refused nobody knows which mission the world has, and it is given one in any case.
+        self._played[place], self._changed[place], self._coming[place] = mission, True, is_changed
         return place, own if self._randomize and own is not None else episode, named
 
     def _told(
