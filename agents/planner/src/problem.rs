@@ -247,6 +247,12 @@ impl Problem {
     }
 }
 
+/// A formula with each literal turned round, for who asks for them one by one: its negation in clauses may be huge.
+fn opposite(formula: &Cnf) -> Cnf {
+    let turned = |literal: &Literal| Literal { negated: !literal.negated, ..*literal };
+    Cnf(formula.0.iter().map(|clause| clause.iter().map(turned).collect()).collect())
+}
+
 /// Values of variables that are asked for, by variable.
 struct Wanted {
     values: Vec<Vec<u16>>,
@@ -268,7 +274,14 @@ impl Wanted {
             }
             asked.push(literal.value);
             if let Some((_, formulas)) = derived.iter().find(|(var, _)| *var == literal.var) {
-                formulas.iter().for_each(|formula| self.ask(formula, derived));
+                // What is not to follow asks for the opposite of what it follows from.
+                for formula in formulas {
+                    if literal.negated {
+                        self.ask(&opposite(formula), derived);
+                    } else {
+                        self.ask(formula, derived);
+                    }
+                }
             }
         }
     }

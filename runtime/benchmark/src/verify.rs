@@ -232,8 +232,11 @@ fn rows(totals: &Totals) -> BTreeMap<String, Tally> {
     let mut rows = BTreeMap::new();
     for (split, totals) in totals {
         rows.insert(split.name().to_owned(), totals.all);
-        for (name, tally) in totals.parts.iter().chain(&totals.types) {
-            rows.insert(format!("{}, {name}", split.name()), *tally);
+        // A part and a type may have one name: neither stands for the other.
+        for (of, tallies) in [("part", &totals.parts), ("type", &totals.types)] {
+            for (name, tally) in tallies {
+                rows.insert(format!("{}, {of} {name}", split.name()), *tally);
+            }
         }
     }
     rows

@@ -221,6 +221,15 @@ fn what_was_tampered_with_is_named() {
 
     let found = check(&changed(&text, 0, |header| header["totals"]["validation"]["all"]["msr"] = json!(1.5)));
     assert!(matches!(found.as_slice(), [Difference::Totals { place, .. }] if place == "validation"), "{found:?}");
+    // A type that is called like a part stands for no part.
+    let found = check(&changed(&text, 0, |header| {
+        let totals = &mut header["totals"]["validation"];
+        let (name, honest) = totals["parts"].as_object().unwrap().iter().next().unwrap();
+        let (name, honest) = (name.clone(), honest.clone());
+        totals["parts"][&name]["msr"] = json!(0.99);
+        totals["types"][&name] = honest;
+    }));
+    assert!(!found.is_empty());
 
     let lines: Vec<&str> = text.lines().collect();
     let without: Vec<&str> = lines.iter().copied().filter(|line| *line != lines[1]).collect();

@@ -168,7 +168,7 @@ pub fn play(task: &Task, settings: &Settings, language: &Language) -> Result<Pla
         User::new(style, person_of(&task.id, settings.seed), Arc::clone(catalog), Arc::clone(&plan.layout))
     });
     let voice = Voice::new(settings, person_of(&task.id, settings.seed));
-    let mut player = Player { session, played, user, voice, caps: settings.caps, counts: false };
+    let mut player = Player { session, played, user, voice, caps: settings.caps, counts: false, is_over: false };
     player.run(task)?;
     player.session.finish()?;
     let mut played = player.judged();
@@ -231,6 +231,8 @@ struct Player {
     caps: Option<Caps>,
     /// Whether the preparation is over.
     counts: bool,
+    /// Whether the mission is over: what is done after that counts for nothing.
+    is_over: bool,
 }
 
 impl Player {
@@ -355,6 +357,8 @@ impl Player {
             let noted = self.session.take_noted();
             let found = done(&noted);
             noted.outcomes.iter().for_each(|outcome| self.count(outcome));
+            // What ended in the tick that ended the mission was counted.
+            self.is_over = self.session.world().finished().is_some();
             said.extend(noted.said);
             if found.is_some() || self.played.ended_early.is_some() {
                 return Ok((found, said));
@@ -373,7 +377,7 @@ impl Player {
     }
 
     fn count(&mut self, outcome: &Outcome) {
-        if self.counts {
+        if self.counts && !self.is_over {
             self.played.count(outcome, self.caps);
         }
     }
@@ -426,10 +430,12 @@ impl Played {
 
     /// Takes over what the world says of its goals in the end.
     pub(crate) fn judge(&mut self, world: &World) {
+        // A goal that can open again may have done so since the mission was complete.
+        let is_complete = matches!(world.finished(), Some(cohabit_world::Ending::AllGoalsMet));
         self.goals = world.goals().len();
-        self.goals_met = goals_met(world);
-        self.success = self.goals > 0 && self.goals_met == self.goals && self.ended_early.is_none();
-        self.open_goals = open_goals(world);
+        self.goals_met = if is_complete { self.goals } else { goals_met(world) };
+        self.success = is_complete && self.goals > 0 && self.ended_early.is_none();
+        self.open_goals = if is_complete { Vec::new() } else { open_goals(world) };
         self.ticks = world.tick();
         if self.ended_early.is_none()
             && let Some(cohabit_world::Ending::KilledByHazard) = world.finished()

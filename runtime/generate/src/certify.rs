@@ -44,6 +44,9 @@ pub struct Certificate {
     /// States that the planner looked at.
     #[serde(skip)]
     pub expanded: usize,
+    /// Goals that are met as the mission begins.
+    #[serde(skip)]
+    pub met_at_first: usize,
 }
 
 /// The world of a mission before its first tick.
@@ -75,7 +78,8 @@ pub fn certify(id: &str, cdf: &str, catalog: &Arc<Catalog>, seed: u64) -> Result
     }
     let digest = world.digest().iter().map(|byte| format!("{byte:02x}")).collect();
     let (ticks, score) = (world.tick(), world.score());
-    Ok(Certificate { seed, digest, ticks, score, plan: steps, rooms, expanded: planned.expanded })
+    let met_at_first = met.iter().filter(|met| **met).count();
+    Ok(Certificate { seed, digest, ticks, score, plan: steps, rooms, expanded: planned.expanded, met_at_first })
 }
 
 fn carry_out(world: &mut World, plan: &Plan) -> Result<(Vec<PlannedStep>, Vec<RoomId>), String> {

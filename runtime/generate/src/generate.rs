@@ -247,6 +247,9 @@ impl Maker<'_> {
         if !is_as_long_as_asked(kind, &certificate) {
             return Err("plans are shorter or longer than `steps` asks".to_owned());
         }
+        if self.spec.pools.all_open && certificate.met_at_first > 0 {
+            return Err("a goal is met as the mission begins".to_owned());
+        }
         let is_in_the_way = blocker
             .as_ref()
             .is_none_or(|blocker| (blocker.kind == BlockerKind::Locked) != uses(&certificate, &blocker.instance));

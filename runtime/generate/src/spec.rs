@@ -56,6 +56,9 @@ pub(crate) struct Pools {
     /// What stands in the way; anything, if empty.
     #[serde(default)]
     pub blocker_kinds: Vec<BlockerKind>,
+    /// Whether no goal may be met as a mission begins.
+    #[serde(default)]
+    pub all_open: bool,
 }
 
 /// What stands in the way of a goal.

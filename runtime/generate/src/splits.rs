@@ -1,7 +1,9 @@
 //! Missions parted for training, and for tests of what was never seen in training.
 //!
-//! Some floor plans, rooms, objects and compositions are held out: no mission that is trained with has anything of them. A
-//! composition is a type of missions with a class of object, both of which are trained with, but not together.
+//! Some floor plans, rooms, objects and compositions are held out: no mission that is trained with plays on such a floor plan, has a
+//! plan that leads to such a room, or a goal about such an object. The object may stand about in it all the same: as something that
+//! no goal is about, or as a part of the floor plan. A composition is a type of missions with a class of object, both of which are
+//! trained with, but not together.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,7 +54,7 @@ pub enum Part {
     Train,
     /// For tests of what was seen in training: other missions of the same kinds.
     Seen,
-    /// An object that no mission of the training has.
+    /// An object that no goal of the training is about; it may stand about there.
     UnseenObject,
     /// A room that no plan of the training leads to.
     UnseenRoom,
