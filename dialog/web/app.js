@@ -13,7 +13,7 @@ import { askWhenDue, buildSurvey, noteAnswered, takeAnswered } from "./survey.js
 import { forgetSounds, hearState, takeSound } from "./sound.js";
 import { language, text } from "./texts.js";
 import { clearChat, endDoing, input, say, takeLatency, meet, takeLine, takeProgress, takeTurn, takeYou } from "./talk.js";
-import { forgetHeard, greetVoice, loseMicrophone, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
+import { forgetHeard, greetVoice, keepHeard, loseMicrophone, speakLine, stopListening, takeDeaf, takeHeard, takeHearing, takeHush, takeSpeech, takeVoice, takeVoiceKey } from "./voice.js";
 import { awaitFrame, buildViews, takeFrame, takeMarks, takeSeen } from "./view.js";
 
 /** What tests and curious people may read. */
@@ -109,6 +109,7 @@ listen({
   deaf: takeDeaf,
   binary: (buffer) => (isSpeech(buffer) ? takeSpeech(buffer) : takeFrame(buffer)),
   lost: () => {
+    keepHeard();
     stopListening();
     endDoing();
     takeDriving({ body: null, text: "" });

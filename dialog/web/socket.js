@@ -14,8 +14,19 @@ let pauseMs = FIRST_PAUSE_MS;
 let heardAt = 0;
 
 /** By which the session knows this page when it connects again. */
-const KEY = sessionStorage.getItem("visitor") ?? String(crypto.getRandomValues(new Uint32Array(1))[0]);
-sessionStorage.setItem("visitor", KEY);
+const KEY = recallKey();
+
+/** A browser may refuse to keep anything; a page that is loaded anew is then somebody new. */
+function recallKey() {
+  const fresh = String(crypto.getRandomValues(new Uint32Array(1))[0]);
+  try {
+    const key = sessionStorage.getItem("visitor") ?? fresh;
+    sessionStorage.setItem("visitor", key);
+    return key;
+  } catch {
+    return fresh;
+  }
+}
 
 function socketAddress() {
   const token = new URLSearchParams(location.search).get("token");

@@ -203,6 +203,8 @@ export function takeAnswered({ questionnaire, problem }) {
 }
 
 function putOff() {
+  // That a card was closed is told a moment later: the next questionnaire may be shown by then.
+  if (card.open) return;
   if (shown) later.add(shown.name);
   shown = null;
 }

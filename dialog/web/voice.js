@@ -299,6 +299,16 @@ export function forgetHeard(tells = true) {
   if (tells) send({ type: "heard", number, text: null, sure: true });
 }
 
+/** The session that heard it is gone, and a new one knows nothing of it: what is shown stays as if it had been typed. */
+export function keepHeard() {
+  if (!pending) return;
+  const { isShown } = pending;
+  endEditing();
+  if (isShown) return;
+  showHearing("");
+  toast(words("no_connection"));
+}
+
 function endEditing() {
   clearTimeout(pending.timer);
   pending = null;

@@ -29,8 +29,10 @@ let hasLooked = false;
 let left = null;
 /** The turn that was decided a moment ago: what is pressed before the session says so is not about it any more. */
 let deciding = null;
-/** The fields that are emptied once what stands in them was taken. */
+/** What was written for each decision that is not answered yet, by its fields: it is given back if it is not taken. */
 let sent = [];
+/** The turn for which an edit is written: a connection that comes again brings the same one. */
+let edited = null;
 
 function takeHello({ session, mission, map, views, robots: all }) {
   greeted();
@@ -129,7 +131,10 @@ function showProposal() {
   byId("to-say-text").textContent = isOpen ? "Say instead" : "Say";
   for (const id of ["accept", "to-edit", "dismiss", "edit"]) byId(id).disabled = !isOpen;
   if (!isOpen && before && document.activeElement === byId("edit")) byId("edit").blur();
-  if (before?.turn !== shown?.turn) byId("edit").value = "";
+  if (shown && shown.turn !== edited) {
+    edited = shown.turn;
+    byId("edit").value = "";
+  }
   left = shown?.left_ms === null || !shown ? null : { until: performance.now() + shown.left_ms, all: shown.left_ms };
   byId("left").hidden = left === null;
   showLeft();
@@ -159,12 +164,18 @@ function showLeft() {
 /** The robot that is meant, by its body: the one that waits for a decision, or else the one that is chosen. */
 const robotNow = () => shown?.body ?? Number(byId("robot").value || robots[0]?.body || 0);
 
-/** Sends a decision; `from` are the fields that it was written in. */
+/** Sends a decision, and empties the fields that it was written in. */
 function decide(decision, body = robotNow(), from = []) {
   byId("problem").textContent = "";
-  sent = from;
+  if (!sendOrSay({ type: "decide", body, decision })) return;
   if (decision.type !== "edit" && decision.turn !== undefined && decision.turn !== null) deciding = decision.turn;
-  sendOrSay({ type: "decide", body, decision });
+  sent.push(from.map((field) => [field, field.value]));
+  for (const field of from) field.value = "";
+}
+
+/** What was written and not taken stands in its fields again, unless something else does. */
+function giveBack(written) {
+  for (const [field, value] of written) field.value ||= value;
 }
 
 const turnNow = () => (shown && !shown.is_decided && shown.turn !== deciding ? shown.turn : null);
@@ -206,10 +217,11 @@ function stopRobot() {
 }
 
 function takeDecided({ problem }) {
+  const written = sent.shift() ?? [];
   byId("problem").textContent = problem ?? "";
-  if (problem) deciding = null;
-  else for (const field of sent) field.value = "";
-  sent = [];
+  if (!problem) return;
+  deciding = null;
+  giveBack(written);
 }
 
 byId("orders").addEventListener("submit", (event) => {
@@ -400,11 +412,17 @@ listen({
   marks: takeMarks,
   sound: takeSound,
   highlight: (message) => floor.pointOut(message),
-  error: (message) => toast(message.text),
+  error: (message) => {
+    toast(message.text);
+    giveBack(sent.flat());
+    [sent, deciding] = [[], null];
+  },
   binary: (buffer) => {
     if (!isSpeech(buffer)) takeFrame(buffer);
   },
   lost: () => {
+    giveBack(sent.flat());
+    sent = [];
     doing.clear();
     showDoing();
     proposals.clear();

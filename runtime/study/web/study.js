@@ -63,6 +63,7 @@ function showBar(state) {
   byId("leave-pair").hidden = !state.is_with_partner;
   byId("contact").textContent = state.contact ? words("contact", { contact: state.contact }) : "";
   if (state.page !== "mission" || state.is_over) byId("skip-card").close();
+  if (state.page === "withdrawn") byId("leave-card").close();
 }
 
 const heading = (text) => element("h1", "", text);
@@ -313,9 +314,24 @@ const PAGES = {
   ],
 };
 
-byId("skip-now").addEventListener("click", () => send({ over: { ending: "skipped" } }));
+/** The server is told what a card asks. The card stays open until that was taken in, and says why it was not. */
+function tellFromCard(name, event) {
+  const [now, card, problem] = ["now", "card", "problem"].map((part) => byId(`${name}-${part}`));
+  now.addEventListener("click", async (click) => {
+    click.preventDefault();
+    now.disabled = true;
+    problem.textContent = await send(event);
+    now.disabled = false;
+    if (!problem.textContent) card.close();
+  });
+  card.addEventListener("close", () => {
+    problem.textContent = "";
+  });
+}
+
+tellFromCard("skip", { over: { ending: "skipped" } });
+tellFromCard("leave", "withdrew");
 byId("leave").addEventListener("click", () => byId("leave-card").showModal());
-byId("leave-now").addEventListener("click", () => send("withdrew"));
 
 follow(show, (isLost) => {
   byId("offline").hidden = !isLost;
