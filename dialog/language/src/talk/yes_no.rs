@@ -1,6 +1,6 @@
 //! Questions that want a yes or a no: "did you close the fridge?" asks, while "can you close the fridge?" requests.
 
-use cohabit_cdf::{ObjectId, RoomId, state::StateFlag};
+use cohabit_cdf::{ObjectId, Property, RoomId, state::StateFlag};
 
 use crate::{
     answer::claim::asked_state,
@@ -95,12 +95,11 @@ impl Conversation<'_> {
         let settled = settle::settle(&self.planner(context.focus.clone()), &clause);
         let phrase = settled.objects.first()?;
         let ground = self.ground(&context.focus);
-        // `did you throw it away` is of what was in the hand, not of where it went.
-        let want = if clause.intent.is_about_held() {
-            Want { held_first: false, ..Want::object(clause.intent) }
-        } else {
-            Want::place(Intent::Find, &[], None)
-        };
+        // `did you throw it away` is of what was carried, not of where it went.
+        let is_carried =
+            matches!(clause.intent, Intent::Place | Intent::Drop | Intent::Bring | Intent::Throw | Intent::Discard);
+        let affordances: &[Property] = if is_carried { &[Property::Pickupable] } else { &[] };
+        let want = Want::place(Intent::Find, affordances, None);
         let Ok(id) = ground.one(phrase, &want) else {
             let is_search = clause.intent == Intent::Find && !phrase.is_empty();
             return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
@@ -121,7 +120,7 @@ impl Conversation<'_> {
         let is_so = |(flag, expected, _): &(StateFlag, bool, _)| {
             self.scene.object(id).is_some_and(|object| object.has(*flag)) == *expected
         };
-        let is_discarded = clause.intent == Intent::Discard && self.is_in_bin(id);
+        let is_discarded = matches!(clause.intent, Intent::Discard | Intent::Throw) && self.is_in_bin(id);
         let did = match there {
             Some(place) => context.deeds.did_put(id, place),
             None => {
