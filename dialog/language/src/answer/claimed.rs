@@ -37,8 +37,12 @@ impl Answerer<'_> {
             return Understanding::lost("I do not know what you mean.");
         }
         // `is the kitchen light on`, `is the plate in the sink dirty`: that one, if there is one where it is said to be.
-        let found = self.ground().one(phrase, &Want::place(Intent::Find, &[], None));
-        let meant = if matches!(found, Ok(_) | Err(Miss::Several(_))) { phrase.clone() } else { bare.clone() };
+        let is_placed = phrase.room.is_some() || !phrase.relations.is_empty();
+        let is_there = || {
+            let found = self.ground().one(phrase, &Want::place(Intent::Find, &[], None));
+            matches!(found, Ok(_) | Err(Miss::Several(_)))
+        };
+        let meant = if is_placed && is_there() { phrase.clone() } else { bare.clone() };
         match claim {
             Claim::State(state, words) if meant.is_all || meant.is_many() => self.are_in_state(&meant, state, words),
             Claim::State(state, words) => {
