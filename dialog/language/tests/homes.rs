@@ -79,7 +79,10 @@ fn what_it_did_is_told_of_what_it_did_alone() {
     ];
     answers(&mut talk, &asked);
     talk.say_and_do("wash the plate on the kitchen island");
-    answers(&mut talk, &[("did you wash the plate?", "= Yes")]);
+    answers(&mut talk, &[("did you wash the plate?", "= Yes"), ("did you wash it?", "= Yes")]);
+    talk.say_and_do("fill the kettle");
+    let told = talk.say("did you fill it?");
+    assert!(told.starts_with("= Yes") && told.contains("kettle"), "{told}");
 }
 
 #[test]

@@ -159,15 +159,24 @@ impl Deeds {
         held_after(before)
     }
 
-    /// Whether a deed was done to this thing itself: what is put, poured, thrown, filled or washed is in the hand.
-    fn is_done_to(&self, deed: &Deed, id: ObjectId) -> bool {
+    /// The thing itself that a deed was done to: what is put, poured, thrown, filled or washed is in the hand.
+    fn done_to(&self, deed: &Deed) -> Option<ObjectId> {
         match deed.step.action {
             Action::Place { .. }
             | Action::Interact { verb: Verb::Pour | Verb::Throw | Verb::Fill | Verb::Clean, .. } => {
-                self.held_before(deed) == Some(id)
+                self.held_before(deed)
             }
-            _ => deed.step.object() == Some(id),
+            _ => deed.step.object(),
         }
+    }
+
+    fn is_done_to(&self, deed: &Deed, id: ObjectId) -> bool {
+        self.done_to(deed) == Some(id)
+    }
+
+    /// What it did something of that kind to last: `it`, where that is asked about.
+    pub(crate) fn last_done_to(&self, intent: Intent) -> Option<ObjectId> {
+        self.done_to(self.0.iter().rfind(|deed| is_of_step(&deed.step, intent))?)
     }
 
     /// Whether it put this thing there.

@@ -100,7 +100,8 @@ impl Conversation<'_> {
             matches!(clause.intent, Intent::Place | Intent::Drop | Intent::Bring | Intent::Throw | Intent::Discard);
         let affordances: &[Property] = if is_carried { &[Property::Pickupable] } else { &[] };
         let want = Want::place(Intent::Find, affordances, None);
-        let Ok(id) = ground.one(phrase, &want) else {
+        let last = phrase.is_bare_pronoun().then(|| context.deeds.last_done_to(clause.intent)).flatten();
+        let Ok(id) = last.map_or_else(|| ground.one(phrase, &want), Ok) else {
             let is_search = clause.intent == Intent::Find && !phrase.is_empty();
             return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
         };
