@@ -55,7 +55,7 @@ PARTICIPANTS = corpus.CRATE.parent / "language/tests/participants"
 TALKS = [*sorted(PARTICIPANTS.glob("*.txt")), *sorted((corpus.CRATE / "corpus/talks").glob("*.txt"))]
 #: Nothing is fitted to these talks and writers: they are to measure with.
 UNSEEN_TALKS = {"oona", "bram", "sofia", "niamh", "piotr", "winifred", "bernard", "vikram"}
-UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd fm fn fo gs gt gu ia ib ic js jv ka kb kr ks lc ld".split())
+UNSEEN = set("w bc by ck cn dc dq dr ds fb fc fd fm fn fo gs gt gu ia ib ic js jv ka kb kr ks lc ld ls lv ly mc mi ml".split())
 
 
 def main():
