@@ -1,8 +1,8 @@
 //! What tests need that a machine may lack. The build scripts of crates with such tests set a `cfg` for each thing that is
 //! there; where it is absent, the tests are reported as ignored: `#[cfg_attr(not(browser), ignore = "needs a browser")]`.
 //!
-//! A reason that begins with `needs` fails `.ci/run`, where all of that has to be there. One that begins with `optional` does
-//! not. Other reasons are those of tests that run on demand only.
+//! Reasons that begin with `needs` are of what [`NEEDED`] lists: `.ci/run` fails where that is absent. Those that begin with
+//! `optional` are of other things. Other reasons are those of tests that run on demand only.
 //!
 //! A build script looks again when what it found is gone. What is installed later is noticed after `touch tests/needs.rs`;
 //! until then a test of `cohabit-tests` fails, and says so.
@@ -52,6 +52,9 @@ pub const LEROBOT: Need = Need { name: "lerobot", find: lerobot, variables: &[] 
 /// All of them.
 pub const ALL: [Need; 11] =
     [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN, VOICE, WHISPER, MOUNTS, FAST_DOWNWARD, PYCOCOTOOLS, LEROBOT];
+
+/// Those that have to be there where `COHABIT_TESTS` is `all`.
+pub const NEEDED: [Need; 5] = [REFERENCE_DATA, BROWSER, PYTHON, PIP, VULKAN];
 
 /// Tells cargo which of these are there, and when to look again. Called by build scripts.
 pub fn tell(needs: &[Need]) {
