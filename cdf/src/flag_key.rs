@@ -3,7 +3,7 @@
 use crate::{catalog::Property, state::StateFlag};
 
 /// Every flag, its key, and the property that an object needs to have it.
-const FLAGS: [(StateFlag, &str, Option<Property>); 25] = [
+const FLAGS: [(StateFlag, &str, Option<Property>); 28] = [
     (StateFlag::PickedUp, "isPickedUp", Some(Property::Pickupable)),
     (StateFlag::Opened, "isOpen", Some(Property::Openable)),
     (StateFlag::Broken, "isBroken", None),
@@ -29,6 +29,9 @@ const FLAGS: [(StateFlag, &str, Option<Property>); 25] = [
     (StateFlag::Sad, "isSad", None),
     (StateFlag::Angry, "isAngry", None),
     (StateFlag::Scared, "isScared", None),
+    (StateFlag::Wet, "isWet", None),
+    (StateFlag::Creased, "isCreased", None),
+    (StateFlag::Folded, "isFolded", None),
 ];
 
 /// The key that goals use for `flag`, such as `isToggledOn`.

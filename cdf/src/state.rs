@@ -56,11 +56,17 @@ pub enum StateFlag {
     Angry,
     /// Shows a scared face.
     Scared,
+    /// Wet through: laundry as it comes out of the wash.
+    Wet,
+    /// Creased: laundry that wants ironing.
+    Creased,
+    /// Folded.
+    Folded,
 }
 
 impl StateFlag {
     /// All flags, in the order of their bits.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 28] = [
         Self::PickedUp,
         Self::Opened,
         Self::Broken,
@@ -86,6 +92,9 @@ impl StateFlag {
         Self::Sad,
         Self::Angry,
         Self::Scared,
+        Self::Wet,
+        Self::Creased,
+        Self::Folded,
     ];
 
     /// The faces that are shown; an object shows one at a time.

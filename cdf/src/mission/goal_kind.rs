@@ -73,6 +73,9 @@ fn of_flag(flag: StateFlag) -> GoalKind {
         StateFlag::Sad => ("TAMPrototypeHead_01_1", "Its face is sad."),
         StateFlag::Angry => ("TAMPrototypeHead_01_1", "Its face is angry."),
         StateFlag::Scared => ("TAMPrototypeHead_01_1", "Its face is scared."),
+        StateFlag::Wet => ("Towel_1", "It is wet through: laundry and plants of the pack `homes`."),
+        StateFlag::Creased => ("Shirt_1", "It is creased: laundry of the pack `homes`."),
+        StateFlag::Folded => ("Shirt_1", "It is folded: laundry of the pack `homes`."),
     };
     let key = flag_key(flag);
     let example = format!("{{\"{instance}\": \"{key}=true\"}}");
@@ -161,10 +164,10 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::{catalog::Catalog, mission::read_mission};
+    use crate::{WorldData, WorldPack, mission::read_mission};
 
     /// The things that examples name.
-    const THINGS: [&str; 12] = [
+    const THINGS: [&str; 14] = [
         "ActionFigure_1",
         "Apple_1",
         "Bowl_01_1",
@@ -175,13 +178,16 @@ mod tests {
         "FridgeLower_02_1",
         "Hammer_1",
         "Microwave_01_1",
+        "Shirt_1",
         "TAMPrototypeHead_01_1",
+        "Towel_1",
         "V_Monitor_Laser_1",
     ];
 
     #[test]
     fn every_example_can_be_read_as_a_goal() {
-        let catalog = Catalog::builtin();
+        // Some states are of things of that pack alone.
+        let world = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
         for GoalKind { key, form, example, meaning, .. } in goal_kinds() {
             assert!(!meaning.is_empty(), "{key} is not explained");
             let written: Value = serde_json::from_str(&example).unwrap();
@@ -198,7 +204,7 @@ mod tests {
                 "task_goals": [{ "goal_id": 0, "object_states": [states] }],
                 "stateconditions": conditions,
             });
-            let read = read_mission("m.json", &mission.to_string(), &catalog);
+            let read = read_mission("m.json", &mission.to_string(), world.catalog());
             let checked = read.unwrap_or_else(|problems| panic!("{key}: {problems}"));
             assert_eq!(checked.mission.goals[0].states.len(), 1, "{key}");
         }

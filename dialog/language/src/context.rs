@@ -67,6 +67,12 @@ pub struct Context {
     /// What is done after waits.
     #[serde(default)]
     pub(crate) awaited: Vec<Awaited>,
+    /// Whether it goes where the person goes.
+    #[serde(default)]
+    pub(crate) follows: bool,
+    /// Where the person and the robot stood when it last went after them, m.
+    #[serde(default)]
+    pub(crate) gone_after: Option<[[f32; 2]; 2]>,
     /// What it waited for last, in words.
     #[serde(default)]
     pub(crate) waited: Option<String>,
@@ -139,7 +145,7 @@ impl Context {
     /// Takes note of what the robot or a person said. [`crate::Language::understand`] notes what it is told and replies; this is for what
     /// else is said, such as that a plan has ended. A line that repeats the last one is not noted twice.
     pub fn note_said(&mut self, by_robot: bool, text: &str) {
-        if self.lines.last().is_some_and(|(by, last)| *by == by_robot && last == text) {
+        if text.is_empty() || self.lines.last().is_some_and(|(by, last)| *by == by_robot && last == text) {
             return;
         }
         self.lines.push((by_robot, text.to_owned()));
@@ -182,6 +188,7 @@ impl Context {
         }
         self.running.clear();
         self.later.clear();
+        self.follows = false;
         if let Some(search) = self.search.as_mut().filter(|search| search.is_under_way()) {
             search.note_failure(step, status);
             return;
@@ -266,10 +273,10 @@ impl Context {
         !self.running.is_empty() || self.search.is_some()
     }
 
-    /// Whether something is put off: [`crate::Language::wake`] knows when it is done.
+    /// Whether something is put off, or somebody followed: [`crate::Language::wake`] knows when there is something to do.
     #[must_use]
     pub const fn awaits(&self) -> bool {
-        !self.awaited.is_empty()
+        !self.awaited.is_empty() || self.follows
     }
 
     /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.
@@ -278,10 +285,10 @@ impl Context {
         self.search.is_some() || !self.later.is_empty()
     }
 
-    /// Whether the robot is looking for something: how the parts of that end is not worth telling.
+    /// Whether the robot is looking for something or follows somebody: how the parts of that end is not worth telling.
     #[must_use]
     pub fn is_searching(&self) -> bool {
-        self.search.as_ref().is_some_and(Search::is_under_way)
+        self.follows || self.search.as_ref().is_some_and(Search::is_under_way)
     }
 }
 

@@ -10,6 +10,7 @@ pub(crate) mod conversation;
 mod decide;
 pub(crate) mod evidence;
 mod faithful;
+mod follow;
 mod heard;
 mod inquiry;
 pub(crate) mod interpret;

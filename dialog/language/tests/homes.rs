@@ -141,3 +141,123 @@ fn several_things_are_washed_and_put_back() {
     let washed = talk.say("wash them");
     assert_eq!(washed.matches("clean Kitchen_Sink_Double").count(), 2, "{washed}");
 }
+
+const LAUNDRY: &[&str] = &[
+    "plan House_Family UtilityRoom",
+    "add Shirt on Laundry_Basket",
+    "add Iron on Storage_Shelf",
+    "Shirt wet",
+    "Shirt creased",
+];
+
+#[test]
+fn laundry_is_dried_ironed_and_folded_by_what_the_pack_says() {
+    let dries = "take Shirt, open Tumble_Dryer, put Tumble_Dryer, close Tumble_Dryer, toggle Tumble_Dryer";
+    means(LAUNDRY, &["dry the shirt"], &format!("{dries}, open Tumble_Dryer, take Shirt"));
+    means(LAUNDRY, &["iron the shirt"], "take Iron, toggle Iron, clean Shirt, toggle Iron");
+    means(LAUNDRY, &["fold the shirt up"], "close Shirt");
+    let mut talk = Talk::new(LAUNDRY);
+    answers(
+        &mut talk,
+        &[("is the shirt dry?", "= No"), ("is it creased?", "= Yes"), ("did you fold the shirt?", "= No")],
+    );
+    talk.say_and_do("dry the shirt");
+    talk.say_and_do("fold it");
+    answers(
+        &mut talk,
+        &[("is the shirt wet?", "= No"), ("did you fold the shirt?", "= Yes"), ("is it folded?", "= Yes")],
+    );
+    answers(&mut talk, &[("did you close the shirt?", "= No")]);
+    means(LAUNDRY, &["fold the laundry basket"], "! I cannot fold the laundry basket.");
+}
+
+#[test]
+fn what_hands_did_to_laundry_and_plants_is_remembered_and_undone_as_that() {
+    let utility =
+        ["plan House_Family UtilityRoom", "add Shirt on Laundry_Basket", "add Iron on Storage_Shelf", "Shirt creased"];
+    let mut talk = Talk::new(&utility);
+    talk.say_and_do("iron the shirt");
+    answers(&mut talk, &[("did you iron the shirt?", "= Yes"), ("did you wash the shirt?", "= No")]);
+    let mut talk = Talk::new(&["plan House_Family LivingRoom", "add Tumbler on Coffee_Table", "Tumbler water"]);
+    talk.say_and_do("water the plant");
+    let told = talk.say("did you water it?");
+    assert!(told.starts_with("= Yes") && told.contains("plant"), "{told}");
+    let mut talk = Talk::new(&utility);
+    talk.say_and_do("fold the shirt");
+    let undone = talk.language.understand("undo that", &talk.scene, &mut talk.context);
+    assert!(undone.reply().contains("unfolding the shirt"), "{}", undone.reply());
+}
+
+#[test]
+fn what_hangs_on_a_drying_rack_dries() {
+    let flat =
+        ["plan Flat_One_Bed LivingRoom", "add Drying_Rack on Coffee_Table", "add Towel on Coffee_Table", "Towel wet"];
+    means(&flat, &["dry the towel"], "take Towel, put Drying_Rack");
+    let mut talk = Talk::new(&flat);
+    talk.say_and_do("hang the towel on the drying rack");
+    answers(&mut talk, &[("is the towel dry?", "= Yes")]);
+}
+
+#[test]
+fn what_hangs_there_and_is_wet_is_hung_up_again() {
+    let flat =
+        ["plan Flat_One_Bed LivingRoom", "add Drying_Rack on Coffee_Table", "add Towel on Drying_Rack", "Towel wet"];
+    means(&flat, &["dry the towel"], "take Towel, put Drying_Rack");
+}
+
+#[test]
+fn plants_are_watered_with_what_carries_water() {
+    let room = ["plan House_Family LivingRoom", "add Tumbler on Coffee_Table", "Tumbler water"];
+    means(&room, &["water the plant"], "take Tumbler, pour Houseplant_Tall");
+    let dry = ["plan Bungalow Patio"];
+    let fetched = "take Watering_Can, toggle Washbasin, fill Washbasin, pour Plant_Pot_Large";
+    let mut talk = Talk::new(&dry);
+    let done = talk.say("water the big plant pot by the table");
+    assert!(done == fetched || done.starts_with("take Watering_Can, "), "{done}");
+}
+
+#[test]
+fn plants_are_watered_with_what_was_named_for_it() {
+    let room = [
+        "plan House_Family LivingRoom",
+        "add Watering_Can on Coffee_Table",
+        "Watering_Can water",
+        "add Tumbler on Coffee_Table",
+        "Tumbler water",
+    ];
+    means(&room, &["water the plant with the watering can"], "take Watering_Can, pour Houseplant_Tall");
+    means(&room, &["water the plant with the tumbler"], "take Tumbler, pour Houseplant_Tall");
+}
+
+#[test]
+fn water_is_boiled_in_what_boils_it_and_tea_made_with_it() {
+    let kitchen = ["plan House_Family Kitchen", "add Teacup on Kitchen_Island", "Kettle water"];
+    means(&kitchen, &["boil the water in the kettle"], "toggle Kettle");
+    means(&kitchen, &["make me a cup of tea"], "toggle Kettle, take Kettle, pour Teacup");
+    let filled = "take Kettle, toggle Kitchen_Sink_Double, fill Kitchen_Sink_Double";
+    means(KITCHEN, &["boil the kettle"], &format!("{filled}, put Counter_Short, toggle Kettle"));
+    means(
+        &kitchen,
+        &["heat the milk"],
+        "open Fridge_Freezer, take MilkCarton_01, put Stove, toggle Stove, take MilkCarton_01",
+    );
+}
+
+#[test]
+fn tea_is_made_in_what_was_named_for_it() {
+    for (said, poured) in [("make tea in the teapot", "pour Teapot"), ("make some tea in the teacup", "pour Teacup")] {
+        let done = Talk::new(&["plan House_Family Kitchen"]).say(said);
+        assert!(done.ends_with(poured), "{said}: {done}");
+    }
+}
+
+#[test]
+fn laundry_is_washed_in_the_machine_that_is_made_for_it() {
+    let dirty = ["plan House_Family UtilityRoom", "add Shirt on Laundry_Basket", "Shirt dirty"];
+    let washed = "take Shirt, open Washing_Machine, put Washing_Machine, close Washing_Machine, toggle Washing_Machine";
+    means(&dirty, &["wash the shirt"], &format!("{washed}, open Washing_Machine, take Shirt"));
+    let mut talk = Talk::new(&dirty);
+    answers(&mut talk, &[("what is dirty?", "= The shirt on the laundry basket.")]);
+    talk.say_and_do("wash the shirt");
+    answers(&mut talk, &[("what is dirty?", "= None that I know of."), ("what is wet?", "= The shirt in my hand.")]);
+}

@@ -1,8 +1,8 @@
 //! What is done or answered once a plan has ended: what is left of the mission, a question about the outcome, what has yet to be found.
 
 use crate::support::{Talk, text};
-use cohabit_cdf::Status;
-use cohabit_language::{Asking, KnownGoal, Understanding};
+use cohabit_cdf::{RoomId, Status};
+use cohabit_language::{Asking, KnownGoal, KnownPerson, Understanding};
 
 /// Says something and carries out all that comes of it; a goal is met once the plan for it has ended. What was done and said, in order.
 fn carried_out(talk: &mut Talk, utterance: &str) -> Vec<String> {
@@ -300,4 +300,114 @@ fn when_somebody_has_time_is_no_time() {
     let check = |said: &str, expected: &str| assert_eq!(Talk::new(&[]).say(said), expected, "{said}");
     check("when you get a minute, open the fridge", "open FridgeLower_02_1");
     check("when you are done, open the fridge", "open FridgeLower_02_1");
+}
+
+#[test]
+fn who_is_followed_is_gone_after_until_something_else_is_asked_for() {
+    let at = |talk: &Talk, ahead_m: f32| {
+        let [x, y, z] = talk.scene.robot.position_m;
+        Some(KnownPerson { position_m: [x + ahead_m, y, z], yaw_rad: 0.0, room: talk.scene.robot.room })
+    };
+    let goes =
+        |understanding: &Understanding| matches!(understanding, Understanding::Plan { steps, .. } if !steps.is_empty());
+    let mut talk = Talk::new(&[]);
+    assert!(talk.say("follow me").contains("cannot see where you are"));
+    assert!(!talk.context.awaits());
+    for ends in ["stop", "turn left"] {
+        let mut talk = Talk::new(&[]);
+        talk.scene.person = at(&talk, 1.0);
+        assert!(talk.say("come with me").contains("I follow you"));
+        assert!(talk.language.wake(1.0, &talk.scene, &mut talk.context).is_none(), "they have not gone on");
+        talk.scene.person = at(&talk, 4.0);
+        let after = talk.language.wake(2.0, &talk.scene, &mut talk.context).expect("they have gone on");
+        assert!(goes(&after) && after.reply().is_empty(), "{after:?}");
+        let Understanding::Plan { steps, .. } = after else { unreachable!() };
+        assert!(talk.language.wake(2.5, &talk.scene, &mut talk.context).is_none(), "it is on its way");
+        talk.carry_out(&steps);
+        assert!(talk.say("where is the fridge?").starts_with('='), "a question is answered on the way");
+        assert!(talk.context.awaits(), "and it goes on following");
+        talk.say_and_do(ends);
+        talk.scene.person = at(&talk, 8.0);
+        assert!(talk.language.wake(9.0, &talk.scene, &mut talk.context).is_none(), "{ends}");
+    }
+}
+
+#[test]
+fn who_stands_still_beyond_a_doorway_is_gone_after_once() {
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("open the fridge");
+    let [x, y, z] = talk.scene.robot.position_m;
+    let person =
+        |ahead_m: f32, yaw_rad: f32, room: RoomId| Some(KnownPerson { position_m: [x + ahead_m, y, z], yaw_rad, room });
+    talk.scene.person = person(3.0, 0.0, talk.scene.robot.room);
+    talk.say_and_do("follow me");
+    // They look back at the robot from the next room.
+    talk.scene.person = person(1.0, std::f32::consts::PI, RoomId::LAB1);
+    let mut legs = 0;
+    for second in 0..20 {
+        let woken = talk.language.wake(f64::from(second), &talk.scene, &mut talk.context);
+        if let Some(Understanding::Plan { steps, .. }) = woken {
+            talk.carry_out(&steps);
+            legs += 1;
+        }
+    }
+    assert!((1..3).contains(&legs), "{legs}");
+    let told = talk.say("what did you do?");
+    assert!(told.starts_with("= I followed you. Before that I opened the fridge"), "{told}");
+}
+
+#[test]
+fn who_is_not_to_follow_stays_and_who_is_to_wait_waits() {
+    let mut talk = Talk::new(&[]);
+    let ([x, y, z], room) = (talk.scene.robot.position_m, talk.scene.robot.room);
+    let person = |ahead_m: f32| Some(KnownPerson { position_m: [x + ahead_m, y, z], yaw_rad: 0.0, room });
+    talk.scene.person = person(1.0);
+    talk.say("follow me");
+    assert_eq!(talk.say("wait 10 seconds"), "= I wait for 10 seconds.");
+    talk.scene.person = person(4.0);
+    assert_eq!(woken(&mut talk, 0.0), None, "it waits where it is");
+    assert_eq!(woken(&mut talk, 10.0).as_deref(), Some("= 10 seconds are over."));
+    assert!(woken(&mut talk, 11.0).is_some_and(|then| then.starts_with("go ")), "and goes on following");
+    assert_eq!(talk.say("don't follow me any more"), "stop!");
+    talk.scene.person = person(8.0);
+    assert_eq!(woken(&mut talk, 20.0), None);
+}
+
+#[test]
+fn who_goes_somewhere_or_asks_for_something_first_is_followed_too() {
+    let mut talk = Talk::new(&[]);
+    let ([x, y, z], room) = (talk.scene.robot.position_m, talk.scene.robot.room);
+    talk.scene.person = Some(KnownPerson { position_m: [x + 1.0, y, z], yaw_rad: 0.0, room });
+    let told = talk.say("follow me to the main office");
+    assert!(told.contains("I follow you") && talk.context.awaits(), "{told}");
+    let language = talk.language.clone().without_rewriter();
+    let first = language.understand("pick up the banana and follow me", &talk.scene, &mut talk.context);
+    assert_eq!(text(&first, &talk.scene), "take Banana_01_1");
+    let Understanding::Plan { steps, .. } = first else { unreachable!() };
+    talk.carry_out(&steps);
+    let then = language.carry_on(&talk.scene, &mut talk.context).expect("it follows then");
+    assert!(then.reply().contains("I follow you") && talk.context.awaits(), "{then:?}");
+}
+
+#[test]
+fn it_gets_out_of_the_way_and_gets_things_out_of_it() {
+    let mut talk = Talk::new(&[]);
+    for said in ["get out of the way", "could you step aside please", "you are in my way"] {
+        assert_eq!(talk.say(said), "move -1.00", "{said}");
+    }
+    let mut kitchen = Talk::new(&["plan House_Family Kitchen", "add Toy_Car on Kitchen_Island"]);
+    let done = kitchen.say("move the toy car out of the way");
+    assert!(done.starts_with("take Toy_Car, put "), "{done}");
+}
+
+#[test]
+fn who_wants_to_be_told_when_something_is_so_is_told() {
+    for said in ["tell me when the kettle has boiled", "when the kettle is hot, let me know"] {
+        let mut talk = Talk::new(&["plan House_Family Kitchen", "Kettle water"]);
+        assert_eq!(talk.say(said), "= I wait until the kettle is hot.", "{said}");
+        assert!(woken(&mut talk, 1.0).is_none(), "{said}");
+        let kettle = talk.scene.objects.iter_mut().find(|object| object.instance == "Kettle").expect("a kettle");
+        kettle.flags.set(cohabit_cdf::StateFlag::Hot, true);
+        assert_eq!(woken(&mut talk, 2.0).as_deref(), Some("= The kettle is hot."), "{said}");
+    }
 }

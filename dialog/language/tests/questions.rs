@@ -177,3 +177,11 @@ fn what_a_request_takes_in_hand_is_there_for_the_next() {
     let done = Talk::new(&[]).say("fill the yellow mug with water and pick up the yellow mug");
     assert!(done.starts_with("take CoffeeMug_Yellow_1") && !done.contains("put"), "{done}");
 }
+
+#[test]
+fn only_what_can_be_so_is_told_to_be_so() {
+    let told = replied(&[], &["what is clean?"]);
+    assert!(!told.contains("table"), "{told}");
+    let told = replied(&[], &["is the red button pressed?"]);
+    assert!(!told.starts_with("Yes"), "{told}");
+}

@@ -104,6 +104,9 @@ const fn name(flag: StateFlag) -> &'static str {
         StateFlag::Sad => "SAD",
         StateFlag::Angry => "ANGRY",
         StateFlag::Scared => "SCARED",
+        StateFlag::Wet => "WET",
+        StateFlag::Creased => "CREASED",
+        StateFlag::Folded => "FOLDED",
     }
 }
 

@@ -38,7 +38,7 @@ pub(crate) struct Sign {
 const STILL: Sign = Sign { flag: StateFlag::Hot, unless: None, frames: &[], per_s: 0.0, fit: Fit::Around };
 
 /// All signs.
-pub(crate) const SIGNS: [Sign; 11] = [
+pub(crate) const SIGNS: [Sign; 14] = [
     Sign { flag: StateFlag::Hot, unless: Some(When::Hot), frames: &["steam"], fit: Fit::Above, ..STILL },
     Sign { flag: StateFlag::Cold, unless: Some(When::Cold), frames: &["frost"], ..STILL },
     Sign { flag: StateFlag::Sparking, frames: &["bolts_1", "bolts_2", "bolts_3", "bolts_4"], per_s: 11.0, ..STILL },
@@ -49,6 +49,9 @@ pub(crate) const SIGNS: [Sign; 11] = [
     Sign { flag: StateFlag::Eaten, unless: Some(When::Eaten), frames: &["crumbs"], fit: Fit::Foot, ..STILL },
     Sign { flag: StateFlag::Toggled, unless: Some(When::On), frames: &["lamp"], fit: Fit::Badge, ..STILL },
     Sign { flag: StateFlag::Embiggenated, frames: &["growth"], fit: Fit::Foot, ..STILL },
+    Sign { flag: StateFlag::Wet, frames: &["drops"], fit: Fit::Foot, ..STILL },
+    Sign { flag: StateFlag::Creased, frames: &["creases"], ..STILL },
+    Sign { flag: StateFlag::Folded, frames: &["folds"], ..STILL },
     Sign { flag: StateFlag::Locked, frames: &["padlock"], fit: Fit::Front, ..STILL },
 ];
 

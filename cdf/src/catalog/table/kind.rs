@@ -83,6 +83,15 @@ impl ActionKind {
         }
     }
 
+    /// The verb of this kind; none for walking, picking up and placing.
+    #[must_use]
+    pub const fn verb(self) -> Option<Verb> {
+        match self.on(ObjectId(0)) {
+            Action::Interact { verb, .. } => Some(verb),
+            _ => None,
+        }
+    }
+
     /// The action of this kind on an object.
     #[must_use]
     pub const fn on(self, object: ObjectId) -> Action {

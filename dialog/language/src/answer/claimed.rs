@@ -151,13 +151,8 @@ impl Answerer<'_> {
 
     /// What is in a state here: `is anything broken`.
     pub(crate) fn all_in_state(&self, state: StateWord, words: &[String], is_whether: bool) -> Understanding {
-        // What is so needs no leave to be so.
-        let may = if matches!(state, StateWord::Flag(_, true)) { &[] } else { may_be(state) };
         let is_in = |object: &&KnownObject| {
-            let class = self.catalog.class(object.class);
-            object.room == self.scene.robot.room
-                && (may.is_empty() || may.iter().any(|property| class.has(*property)))
-                && self.is_so(object, state)
+            object.room == self.scene.robot.room && self.can_be(object, state) && self.is_so(object, state)
         };
         let found: Vec<ObjectId> = self.scene.objects.iter().filter(is_in).map(|object| object.id).collect();
         if found.is_empty() {
@@ -169,6 +164,23 @@ impl Answerer<'_> {
         let start = if is_whether { "yes: " } else { "" };
         let text = prose::sentence(&format!("{start}{}", prose::list(&named, "and")));
         Understanding::whether(true, text, found)
+    }
+
+    /// Whether it is worth saying that a thing is so: a table is not closed, nor a lamp dry. What is so needs no leave to be so.
+    pub(crate) fn can_be(&self, object: &KnownObject, state: StateWord) -> bool {
+        let changed_by: &[Intent] = match state {
+            StateWord::Flag(_, true) => return true,
+            StateWord::Flag(StateFlag::Wet, _) => &[Intent::Dry, Intent::Water],
+            StateWord::Flag(StateFlag::Creased, _) => &[Intent::Iron],
+            StateWord::Flag(StateFlag::Folded, _) => &[Intent::Fold],
+            _ => &[],
+        };
+        let (class, may) = (self.catalog.class(object.class), may_be(state));
+        if changed_by.is_empty() {
+            return may.is_empty() || may.iter().any(|property| class.has(*property));
+        }
+        let mut processes = self.devices.processes.iter();
+        processes.any(|process| changed_by.contains(&process.intent) && process.of.contains(&object.class))
     }
 
     fn is_of_color(&self, object: &KnownObject, asked: &str) -> Understanding {

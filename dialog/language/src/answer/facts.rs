@@ -16,7 +16,7 @@ pub(crate) struct Facts<'a> {
 }
 
 /// States worth telling of a single thing.
-const STATES: [(StateFlag, &str); 10] = [
+const STATES: [(StateFlag, &str); 13] = [
     (StateFlag::Broken, "broken"),
     (StateFlag::Dirty, "dirty"),
     (StateFlag::Hot, "hot"),
@@ -27,6 +27,9 @@ const STATES: [(StateFlag, &str); 10] = [
     (StateFlag::Infected, "infected with a virus"),
     (StateFlag::Sparking, "throwing sparks"),
     (StateFlag::Embiggenated, "large"),
+    (StateFlag::Wet, "wet"),
+    (StateFlag::Creased, "creased"),
+    (StateFlag::Folded, "folded"),
 ];
 
 /// What is wrong with a thing in such a state.

@@ -118,6 +118,11 @@ impl Answerer<'_> {
     pub(crate) fn which(&self, phrase: &Phrase, question: &Question) -> Understanding {
         let all: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
         let mut found = self.ground().narrow(phrase, &all);
+        // `what is closed`: of what opens.
+        if phrase.namings.is_empty() {
+            let can_be = |object: &KnownObject| phrase.states.iter().all(|state| self.can_be(object, *state));
+            found.retain(|id| self.scene.object(*id).is_some_and(can_be));
+        }
         // `which shelves do you see there?`
         let is_here = question.rest.iter().any(|word| matches!(word.as_str(), "see" | "here" | "there"));
         if is_here {

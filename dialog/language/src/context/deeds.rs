@@ -33,7 +33,7 @@ pub(crate) struct Deed {
 pub(crate) struct Deeds(Vec<Deed>);
 
 /// How what steps say is told once it is done.
-const PAST: [(&str, &str); 25] = [
+const PAST: [(&str, &str); 30] = [
     ("breaking", "broke"),
     ("bringing", "brought"),
     ("closing", "closed"),
@@ -41,7 +41,10 @@ const PAST: [(&str, &str); 25] = [
     ("cutting", "cut"),
     ("examining", "examined"),
     ("filling", "filled"),
+    ("folding", "folded"),
+    ("following", "followed"),
     ("going", "went"),
+    ("ironing", "ironed"),
     ("looking", "looked"),
     ("moving", "moved"),
     ("opening", "opened"),
@@ -57,7 +60,9 @@ const PAST: [(&str, &str); 25] = [
     ("taking", "took"),
     ("throwing", "threw"),
     ("turning", "turned"),
+    ("unfolding", "unfolded"),
     ("washing", "washed"),
+    ("watering", "watered"),
     ("cleaning", "cleaned"),
 ];
 
@@ -70,7 +75,12 @@ impl Deed {
 
 impl Deeds {
     pub(crate) fn add(&mut self, step: &Step, reason: &str) {
-        if !step.commits() || step.says.is_empty() {
+        // How often it set out after whom it follows is not worth remembering.
+        let is_next_leg = |last: &Deed| {
+            let is_to_point = matches!(step.action, Action::GoTo { target: GoToTarget::Point(_) });
+            is_to_point && last.step.says == step.says && last.reason == reason
+        };
+        if !step.commits() || step.says.is_empty() || self.0.last().is_some_and(is_next_leg) {
             return;
         }
         self.0.push(Deed { step: step.clone(), reason: reason.to_owned(), goals: Vec::new() });
@@ -162,6 +172,8 @@ impl Deeds {
     /// The thing itself that a deed was done to: what is put, poured, thrown, filled or washed is in the hand.
     fn done_to(&self, deed: &Deed) -> Option<ObjectId> {
         match deed.step.action {
+            // What is ironed or watered is not in the hand: the iron or the can is.
+            _ if by_hand(&deed.step).is_some() => deed.step.object(),
             Action::Place { .. }
             | Action::Interact { verb: Verb::Pour | Verb::Throw | Verb::Fill | Verb::Clean, .. } => {
                 self.held_before(deed)
@@ -198,6 +210,7 @@ impl Deeds {
                 | Intent::Carrot
                 | Intent::Resize
                 | Intent::Shrink
+                | Intent::Dry
         );
         let word = format!(" {} ", intent.verb());
         is_by_machine && self.0.iter().any(|deed| deed.reason.contains(&word) && self.is_about(deed, id))
@@ -228,9 +241,14 @@ fn is_of_step(step: &Step, intent: Intent) -> bool {
     let other_way = match intent {
         Intent::TurnOn => "turning off",
         Intent::TurnOff => "turning on",
-        _ => return is_of(&step.action, intent),
+        _ => return by_hand(step).map_or_else(|| is_of(&step.action, intent), |by_hand| by_hand == intent),
     };
     is_of(&step.action, intent) && !step.says.starts_with(other_way)
+}
+
+/// What a step does that its action calls otherwise: to iron is to clean with an iron.
+fn by_hand(step: &Step) -> Option<Intent> {
+    Intent::BY_HAND.into_iter().find(|by_hand| step.says.starts_with(by_hand.doing()))
 }
 
 /// `opening the fridge` → `opened the fridge`.

@@ -46,7 +46,10 @@ impl Ground<'_> {
 
     /// `shut it`, where nothing was spoken of: the only thing in the room that is open.
     fn only_one_in_need(&self, want: &Want<'_>) -> Option<ObjectId> {
-        if !matches!(want.intent, Intent::Close | Intent::TurnOff | Intent::Repair | Intent::Clean) {
+        if !matches!(
+            want.intent,
+            Intent::Close | Intent::TurnOff | Intent::Repair | Intent::Clean | Intent::Dry | Intent::Iron
+        ) {
             return None;
         }
         let is_in_need = |object: &&KnownObject| {

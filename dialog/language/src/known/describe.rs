@@ -11,17 +11,28 @@ use crate::{
 };
 
 /// States worth saying when they tell two objects apart.
-const TELLING: [(StateFlag, &str, &str); 6] = [
+const TELLING: [(StateFlag, &str, &str); 9] = [
     (StateFlag::Broken, "broken", "whole"),
     (StateFlag::Dirty, "dirty", "clean"),
     (StateFlag::Embiggenated, "large", "small"),
     (StateFlag::Hot, "hot", "cool"),
     (StateFlag::Cold, "cold", "warm"),
     (StateFlag::Opened, "open", "closed"),
+    (StateFlag::Wet, "wet", "dry"),
+    (StateFlag::Creased, "creased", "smooth"),
+    (StateFlag::Folded, "folded", "unfolded"),
 ];
 
 /// States by which people see a difference before anybody says anything.
-const VISIBLE: [StateFlag; 4] = [StateFlag::Broken, StateFlag::Dirty, StateFlag::Embiggenated, StateFlag::Cereal];
+const VISIBLE: [StateFlag; 7] = [
+    StateFlag::Broken,
+    StateFlag::Dirty,
+    StateFlag::Embiggenated,
+    StateFlag::Cereal,
+    StateFlag::Wet,
+    StateFlag::Creased,
+    StateFlag::Folded,
+];
 
 /// How large something is at least by which a place is told, and how near it is to that, m.
 const LANDMARK_M: f32 = 0.4;

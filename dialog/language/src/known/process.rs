@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use cohabit_cdf::{
-    ActionKind, ActionTable, Catalog, ClassId, Fluid, Property,
+    ActionKind, ActionTable, Catalog, ClassId, Fluid, Property, Verb,
     state::StateFlag,
-    table::{Change, Device, Effect, Rule, Site, Term, Test, Work},
+    table::{Change, Condition, Device, Effect, Over, Rule, Site, Term, Test, Work},
 };
 use serde::Deserialize;
 
@@ -16,8 +16,12 @@ use crate::{known::uses::Uses, words::intent::Intent};
 #[derive(Clone, Debug)]
 pub(crate) struct Process {
     pub(crate) intent: Intent,
-    /// Where the object goes.
+    /// Where the object goes, or the tool; nowhere, if the bare hand does it.
     pub(crate) at: Vec<ClassId>,
+    /// What it can be done to; to all, if this is empty.
+    pub(crate) of: Vec<ClassId>,
+    /// What it is made for, as a washing machine is for laundry.
+    pub(crate) suits: Vec<ClassId>,
     /// Other things by which people name that.
     pub(crate) also: Vec<ClassId>,
     /// What sets it off; the place itself, or what a colour chooses, if this is empty.
@@ -39,6 +43,16 @@ pub(crate) enum Act {
     Take,
     Fill,
     Clean,
+    /// Fills the object, if it is empty, and puts it back.
+    FillFirst,
+    /// Takes the tool in the hand.
+    Tool,
+    /// Takes something with this in it in the hand.
+    Vessel(Fluid),
+    /// Does this to the object.
+    Do(Verb),
+    /// Turns the tool off.
+    Rest,
 }
 
 /// All that is known of devices.
@@ -58,6 +72,8 @@ pub(crate) struct Devices {
     pub(crate) hammers: Vec<ClassId>,
     pub(crate) knives: Vec<ClassId>,
     pub(crate) bins: Vec<ClassId>,
+    /// What is made for carrying water to something.
+    pub(crate) watering_cans: Vec<ClassId>,
     /// What feeds and cuts circuits.
     pub(crate) levers: Vec<ClassId>,
     /// What machines turn other things into.
@@ -71,7 +87,7 @@ struct File {
     way: Vec<WayEntry>,
 }
 
-/// What is asked for, and one of `work`, `makes`, `action` and `kept_in`: how it comes about.
+/// What is asked for, and one of `work`, `makes`, `action`, `by_hand` and `kept_in`: how it comes about.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WayEntry {
@@ -82,6 +98,8 @@ struct WayEntry {
     makes: Option<String>,
     #[serde(default)]
     action: Option<ActionKind>,
+    #[serde(default)]
+    by_hand: Option<String>,
     #[serde(default)]
     kept_in: Vec<String>,
     #[serde(default)]
@@ -130,6 +148,7 @@ impl Devices {
             hammers: of_kind("hammer"),
             knives: of_kind("knife"),
             bins: known(table.kind("bin")),
+            watering_cans: known(table.kind("watering_can")),
             levers: of_class(&|_, device| feeds(device)),
             made: made.collect(),
             uses: Uses::new(catalog),
@@ -186,14 +205,15 @@ impl WayEntry {
             let rules = table.rules().iter().filter(|rule| rule.action == action);
             return rules.filter_map(|rule| self.by_rule(catalog, rule)).collect();
         }
+        if let Some(text) = &self.by_hand {
+            let change = read(text);
+            return table.rules().iter().filter_map(|rule| self.by_hand(catalog, rule, &change)).collect();
+        }
         if !self.kept_in.is_empty() {
             let steps = vec![Act::Hold, Act::Open, Act::Place, Act::Close];
             return vec![self.process(of_ids(catalog, &self.kept_in), [Vec::new(), Vec::new()], steps, None, catalog)];
         }
-        let makes = self.makes.as_ref().map(|text| {
-            let change = text.parse::<Change>();
-            change.expect("invariant: the built-in table parses, the tests load it")
-        });
+        let makes = self.makes.as_deref().map(read);
         let is_meant = |name: &str| {
             let kind = name.split(' ').next().unwrap_or(name);
             let does = |change: &Change| table.work(name).is_some_and(|work| work.changes().any(|one| one == change));
@@ -201,32 +221,63 @@ impl WayEntry {
         };
         let mut doers: Vec<&Device> = table.devices().iter().filter(|device| works_of(device).any(is_meant)).collect();
         doers.sort_by_key(|device| device.at != Site::It);
-        self.by_devices(catalog, &doers)
+        self.by_devices(catalog, &doers, makes.as_ref())
     }
 
-    /// What a rule does with what is held, at things of the class that it names.
+    /// What a rule does with whatever is held, at things of the class that it names.
     fn by_rule(&self, catalog: &Catalog, rule: &Rule) -> Option<Process> {
-        let places = rule.when.iter().find_map(|condition| match &condition.test {
-            Test::IsA(pattern) if condition.term == Term::It && !condition.negated => Some(of_ids(catalog, &pattern.0)),
-            _ => None,
-        })?;
+        let places = named(catalog, rule, Term::It).filter(|_| named(catalog, rule, Term::Held).is_none())?;
         let act = match rule.action {
             ActionKind::Fill => Act::Fill,
             ActionKind::Clean => Act::Clean,
             _ => return None,
         };
-        let is_on = |test: &Test| *test == Test::Is(StateFlag::Toggled);
-        let conditions = || rule.needs.iter().flat_map(|need| &need.any);
-        let runs = conditions().any(|one| one.term == Term::It && !one.negated && is_on(&one.test));
+        let runs = has_to_run(rule, Term::It);
         let steps = [Act::Hold].into_iter().chain(runs.then_some(Act::Run)).chain([act]).collect();
         let fluid = changes(&rule.effects).find_map(fluid_of);
         Some(self.process(places, [Vec::new(), Vec::new()], steps, fluid, catalog))
     }
 
-    fn by_devices(&self, catalog: &Catalog, doers: &[&Device]) -> Vec<Process> {
+    /// What a hand does by a rule that makes `change`, to what the rule names: to what is held at a place, or to `it` with a tool.
+    fn by_hand(&self, catalog: &Catalog, rule: &Rule, change: &Change) -> Option<Process> {
+        let Change::Set(_, flag, value) = *change else { return None };
+        let does = |term| {
+            let always = rule.effects.iter().filter(|effect| effect.when.is_empty());
+            always.flat_map(|effect| &effect.changes).any(|one| *one == Change::Set(term, flag, value))
+        };
+        let (it, held) = (named(catalog, rule, Term::It)?, named(catalog, rule, Term::Held));
+        if does(Term::Held) && rule.action == ActionKind::Place {
+            let process = self.process(it, [Vec::new(), Vec::new()], vec![Act::Hold, Act::Place], None, catalog);
+            return Some(Process { of: held.unwrap_or_default(), ..process });
+        }
+        let verb = rule.action.verb().filter(|_| does(Term::It))?;
+        let runs = has_to_run(rule, Term::Held);
+        let with = held.as_ref().map(|_| Act::Tool).or_else(|| holds(rule, Term::Held).map(Act::Vessel));
+        let runs_for = |act: Act| runs.then_some(act);
+        let steps =
+            with.into_iter().chain(runs_for(Act::Run)).chain([Act::Do(verb)]).chain(runs_for(Act::Rest)).collect();
+        let process = self.process(held.unwrap_or_default(), [Vec::new(), Vec::new()], steps, None, catalog);
+        Some(Process { of: it, ..process })
+    }
+
+    /// What a device does to what is in itself, as a kettle boils its water.
+    fn in_itself(&self, catalog: &Catalog, device: &Device) -> Process {
+        let is_filled = |one: &Condition| one.term == Term::It && !one.negated && one.test == Test::Filled;
+        let fills = device.needs.iter().flat_map(|need| &need.any).any(is_filled);
+        let steps = fills.then_some(Act::FillFirst).into_iter().chain([Act::Start]).collect();
+        let process = self.process(Vec::new(), [Vec::new(), Vec::new()], steps, None, catalog);
+        Process { of: of_ids(catalog, &device.classes), ..process }
+    }
+
+    fn by_devices(&self, catalog: &Catalog, doers: &[&Device], makes: Option<&Change>) -> Vec<Process> {
         let table = catalog.table();
         let mut processes: Vec<Process> = Vec::new();
         for device in doers {
+            let works: Vec<&Work> = works_of(device).filter_map(|name| table.work(name)).collect();
+            if makes.is_some() && works.iter().any(|work| work.over == Over::Machine) {
+                processes.push(self.in_itself(catalog, device));
+                continue;
+            }
             let at = of_ids(catalog, &places(table, device));
             let (machines, classes) = (of_ids(catalog, &device.works), of_ids(catalog, &device.classes));
             if let Some(other) = processes.iter_mut().find(|process| process.at == at) {
@@ -240,9 +291,13 @@ impl WayEntry {
                 Site::Target => [[machines, classes.clone()].concat(), classes],
             };
             let is_openable = at.iter().any(|class| catalog.class(*class).has(Property::Openable));
-            let mut works = works_of(device).filter_map(|name| table.work(name));
-            let fluid = works.find_map(|work| work.changes().find_map(fluid_of));
-            processes.push(self.process(at, by, self.steps_at(device, is_openable), fluid, catalog));
+            let fluid = works.iter().find_map(|work| work.changes().find_map(fluid_of));
+            let process = self.process(at, by, self.steps_at(device, is_openable), fluid, catalog);
+            let effects: Vec<&Effect> = works.iter().flat_map(|work| &work.effects).collect();
+            let makes_it = |effect: &&&Effect| makes.is_some_and(|change| effect.changes.contains(change));
+            let of = classes_of_all(catalog, effects.iter().filter(makes_it).copied());
+            let suits = effects.iter().filter_map(|effect| thing_of(catalog, effect)).flatten().collect();
+            processes.push(Process { of, suits, ..process });
         }
         processes
     }
@@ -270,8 +325,54 @@ impl WayEntry {
     ) -> Process {
         // With what counts where it is asked for to be filled.
         let fluid = fluid.filter(|_| self.intent == Intent::Fill);
-        Process { intent: self.intent, at, also, start, steps, fluid, object: of_ids(catalog, &self.object) }
+        let object = of_ids(catalog, &self.object);
+        Process { intent: self.intent, at, of: Vec::new(), suits: Vec::new(), also, start, steps, fluid, object }
     }
+}
+
+/// A change that the built-in table names.
+fn read(text: &str) -> Change {
+    text.parse().expect("invariant: the built-in table parses, the tests load it")
+}
+
+/// The classes that a rule is for alone.
+fn named(catalog: &Catalog, rule: &Rule, term: Term) -> Option<Vec<ClassId>> {
+    class_of(catalog, &rule.when, term)
+}
+
+/// The classes of things that an effect comes to alone.
+fn thing_of(catalog: &Catalog, effect: &Effect) -> Option<Vec<ClassId>> {
+    class_of(catalog, &effect.when, Term::Thing)
+}
+
+/// The classes to which effects come; none in particular, if one of them comes to all.
+fn classes_of_all<'e>(catalog: &Catalog, mut effects: impl Iterator<Item = &'e Effect>) -> Vec<ClassId> {
+    let classes = effects.try_fold(Vec::new(), |mut all, effect| {
+        all.extend(thing_of(catalog, effect)?);
+        Some(all)
+    });
+    classes.unwrap_or_default()
+}
+
+fn class_of(catalog: &Catalog, conditions: &[Condition], term: Term) -> Option<Vec<ClassId>> {
+    conditions.iter().find_map(|condition| match &condition.test {
+        Test::IsA(pattern) if condition.term == term && !condition.negated => Some(of_ids(catalog, &pattern.0)),
+        _ => None,
+    })
+}
+
+/// What has to be in it for a rule to count.
+fn holds(rule: &Rule, term: Term) -> Option<Fluid> {
+    rule.when.iter().find_map(|condition| match condition.test {
+        Test::Holds(fluid) if condition.term == term && !condition.negated => Some(fluid),
+        _ => None,
+    })
+}
+
+/// Whether a rule needs this to be switched on.
+fn has_to_run(rule: &Rule, term: Term) -> bool {
+    let mut conditions = rule.needs.iter().flat_map(|need| &need.any);
+    conditions.any(|one| one.term == term && !one.negated && one.test == Test::Is(StateFlag::Toggled))
 }
 
 fn of_ids(catalog: &Catalog, ids: &[String]) -> Vec<ClassId> {

@@ -7,7 +7,7 @@ use cohabit_cdf::{Catalog, Fluid, Property, RoomId, state::StateFlag};
 use crate::known::{Known, KnownObject, describe};
 
 /// States that people see and speak of.
-const STATES: [(StateFlag, &str); 9] = [
+const STATES: [(StateFlag, &str); 12] = [
     (StateFlag::Broken, "broken"),
     (StateFlag::Dirty, "dirty"),
     (StateFlag::Embiggenated, "large"),
@@ -15,6 +15,9 @@ const STATES: [(StateFlag, &str); 9] = [
     (StateFlag::Cold, "cold"),
     (StateFlag::Cut, "cut"),
     (StateFlag::Eaten, "eaten"),
+    (StateFlag::Wet, "wet"),
+    (StateFlag::Creased, "creased"),
+    (StateFlag::Folded, "folded"),
     (StateFlag::Opened, "open"),
     (StateFlag::Toggled, "running"),
 ];

@@ -109,6 +109,7 @@ impl Planner<'_> {
             Intent::PickUp => self.add_pick_up(&settled),
             Intent::Place | Intent::Bring | Intent::Drop => self.add_place(&settled),
             Intent::Pour => self.add_pour(&settled),
+            Intent::Tea => self.add_tea(&settled),
             Intent::Throw => self.add_throw(&settled),
             Intent::Discard => self.add_discard(&settled),
             Intent::Break | Intent::Cut => self.add_break(&settled),

@@ -1,6 +1,6 @@
 //! Plans with machines: switching them, and getting things heated, cooled, cleaned, repaired, coloured and printed.
 
-use cohabit_cdf::{Action, ClassId, Fluid, ObjectId, Property, Verb, state::StateFlag};
+use cohabit_cdf::{Action, ActionKind, ClassId, Fluid, ObjectId, Property, Verb, state::StateFlag};
 
 use crate::{
     ground::want::{Miss, Want},
@@ -10,7 +10,7 @@ use crate::{
         settle::{Goal, Settled},
     },
     read::{
-        phrase::{Phrase, Place},
+        phrase::{Phrase, Place, RelationKind},
         slot::Role,
     },
     words::{intent::Intent, prose},
@@ -242,7 +242,7 @@ impl Planner<'_> {
                 continue;
             }
             self.brought_about.push((settled.intent, object));
-            let (process, place) = self.choose_process(&settled)?;
+            let (process, place) = self.choose_process(&settled, object)?;
             self.carry_out(&process, object, place, settled.color.as_deref())?;
         }
         Ok(())
@@ -297,8 +297,11 @@ impl Planner<'_> {
         if settled.intent == Intent::Print {
             return self.cartridge(phrase, role);
         }
-        let object = self.find_one(phrase, &want, role)?;
-        if !self.has(object, Property::Pickupable) {
+        // `boil the water in the kettle`: the kettle, with what is in it.
+        let vessel = phrase.relations.iter().find(|relation| relation.kind == RelationKind::Inside);
+        let vessel = vessel.filter(|_| phrase.fluid.is_some()).map(|relation| &relation.to);
+        let object = self.find_one(vessel.unwrap_or(phrase), &want, role)?;
+        if !self.has(object, Property::Pickupable) && !Intent::BY_HAND.contains(&settled.intent) {
             let (verb, the) = (settled.intent.verb(), self.the(object));
             return Err(Fault::Cannot(format!("I cannot {verb} {the}: I cannot carry it.")));
         }
@@ -335,14 +338,22 @@ impl Planner<'_> {
     }
 
     /// The device that was named, or the first that is known.
-    fn choose_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {
+    fn choose_process(&self, settled: &Settled, object: ObjectId) -> Result<(Process, ObjectId), Fault> {
         let named = match (&settled.goal, &settled.tool) {
             (Some(Goal { place: Place::Object(phrase), role, .. }), _) => Some((phrase, *role)),
             (_, Some((phrase, role))) => Some((phrase, *role)),
             _ => None,
         };
-        let Some((phrase, role)) = named else { return self.first_process(settled) };
+        let Some((phrase, role)) = named else {
+            return self.first_process(settled.intent, settled.fluid, object);
+        };
         let processes: Vec<&Process> = self.processes(settled.intent, settled.fluid).collect();
+        // `water the plant with the jug`: no tool of any kind, but whatever carries water.
+        if processes.iter().any(|process| process.is_by_vessel()) {
+            let (process, _) = self.first_process(settled.intent, settled.fluid, object)?;
+            let want = Want::place(Intent::Use, &[Property::Fillable], None);
+            return Ok((process, self.find_one(phrase, &want, Some(role))?));
+        }
         let classes: Vec<ClassId> =
             processes.iter().flat_map(|process| process.at.iter().chain(&process.also)).copied().collect();
         let want = Want { classes: &classes, ..Want::place(Intent::Use, &[], None) };
@@ -368,15 +379,54 @@ impl Planner<'_> {
         self.nearest_of(known()).filter(|_| is_alike).ok_or(fault)
     }
 
-    fn first_process(&self, settled: &Settled) -> Result<(Process, ObjectId), Fault> {
-        let mut known = self
-            .processes(settled.intent, settled.fluid)
-            .filter_map(|process| Some((process, self.nearest(&process.at)?)));
-        known.next().map(|(process, place)| (process.clone(), place)).ok_or_else(|| {
-            let places = self.processes(settled.intent, settled.fluid).flat_map(|process| process.at.clone());
-            let classes: Vec<ClassId> = places.collect();
-            self.need(&classes, format!("I do not know of anything here to {} it with.", settled.intent.verb()))
+    fn first_process(
+        &self,
+        intent: Intent,
+        fluid: Option<Fluid>,
+        object: ObjectId,
+    ) -> Result<(Process, ObjectId), Fault> {
+        let class = self.scene.object(object).map(|known| known.class).unwrap_or_default();
+        let all: Vec<&Process> = self.processes(intent, fluid).collect();
+        let fits = |process: &&Process| process.is_for(class) && self.takes(process, class);
+        let mut fitting: Vec<&Process> = all.iter().copied().filter(fits).collect();
+        fitting.sort_by_key(|process| (!process.at.is_empty(), !process.suits.contains(&class)));
+        if fitting.is_empty() && !all.is_empty() {
+            return Err(Fault::Cannot(format!("I cannot {} {}.", intent.verb(), self.the(object))));
+        }
+        let place = |process: &Process| match process.at.as_slice() {
+            [] => Some(object),
+            places => self.nearest(places),
+        };
+        let mut known = fitting.iter().filter_map(|process| Some(((*process).clone(), place(process)?)));
+        known.next().ok_or_else(|| {
+            let classes: Vec<ClassId> = fitting.iter().flat_map(|process| process.at.clone()).collect();
+            self.need(&classes, format!("I do not know of anything here to {} it with.", intent.verb()))
         })
+    }
+
+    /// Ways in which things bring something about in themselves, as a kettle boils its water.
+    pub(crate) fn in_itself(&self, intent: Intent) -> impl Iterator<Item = &Process> {
+        self.processes(intent, None).filter(|process| process.at.is_empty())
+    }
+
+    /// Has a kettle boil its water.
+    pub(crate) fn boil(&mut self, kettle: ObjectId) -> Result<(), Fault> {
+        let class = self.scene.object(kettle).map(|known| known.class).unwrap_or_default();
+        let process = self.in_itself(Intent::Tea).find(|process| process.is_for(class)).cloned();
+        process.map_or(Ok(()), |process| self.carry_out(&process, kettle, kettle, None))
+    }
+
+    /// Whether what a thing is put into for it takes such things: a toaster takes bread alone.
+    fn takes(&self, process: &Process, class: ClassId) -> bool {
+        let (table, thing) = (self.catalog.table(), self.catalog.class(class));
+        let takes = |place: &ClassId| table.affords(ActionKind::Place, self.catalog.class(*place), Some(thing));
+        !process.steps.contains(&Act::Place) || process.at.iter().any(takes)
+    }
+
+    /// Fills something with `fluid` wherever that is done.
+    pub(crate) fn fill(&mut self, vessel: ObjectId, fluid: Fluid) -> Result<(), Fault> {
+        let (process, place) = self.first_process(Intent::Fill, Some(fluid), vessel)?;
+        self.carry_out(&process, vessel, place, None)
     }
 
     fn carry_out(
@@ -386,7 +436,9 @@ impl Planner<'_> {
         place: ObjectId,
         color: Option<&str>,
     ) -> Result<(), Fault> {
-        let is_inside = self.scene.object(object).is_some_and(|known| known.parent == Some(place));
+        // What hangs somewhere and is wet is hung up again: it dries as it is hung up.
+        let is_hung = process.steps == [Act::Hold, Act::Place];
+        let is_inside = !is_hung && self.scene.object(object).is_some_and(|known| known.parent == Some(place));
         for act in &process.steps {
             match act {
                 // What is in the device already stays there, unless it must be in the hand for what follows.
@@ -403,8 +455,28 @@ impl Planner<'_> {
                 Act::Take => self.take(object),
                 Act::Fill => self.interact(Verb::Fill, place, "filling it at"),
                 Act::Clean => self.interact(Verb::Clean, place, "washing it in"),
+                Act::FillFirst => self.fill_first(object)?,
+                Act::Tool => self.hold(place)?,
+                Act::Vessel(fluid) => {
+                    let named = Some(place).filter(|place| *place != object);
+                    self.hold_vessel(*fluid, named, &process.of)?;
+                }
+                Act::Do(verb) => {
+                    self.open_around(object, false);
+                    self.interact(*verb, object, process.intent.doing());
+                }
+                Act::Rest => self.interact(Verb::Toggle, place, "turning off"),
             }
         }
+        Ok(())
+    }
+
+    /// Fills what is empty, and puts it back where it was.
+    fn fill_first(&mut self, object: ObjectId) -> Result<(), Fault> {
+        let Some(known) = self.scene.object(object).filter(|known| known.fluid == Fluid::None) else { return Ok(()) };
+        let stood_on = known.parent;
+        self.fill(object, Fluid::Water)?;
+        stood_on.into_iter().for_each(|place| self.place_on(place));
         Ok(())
     }
 
@@ -453,6 +525,15 @@ impl Planner<'_> {
 }
 
 impl Process {
+    fn is_for(&self, class: ClassId) -> bool {
+        self.of.is_empty() || self.of.contains(&class)
+    }
+
+    /// Whether it is done with whatever has something in it.
+    fn is_by_vessel(&self) -> bool {
+        self.steps.iter().any(|act| matches!(act, Act::Vessel(_)))
+    }
+
     fn is_done_at(&self, class: ClassId) -> bool {
         self.at.contains(&class) || self.also.contains(&class) || self.start.contains(&class)
     }

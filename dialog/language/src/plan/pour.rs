@@ -1,6 +1,6 @@
 //! Plans of pouring.
 
-use cohabit_cdf::{Action, Fluid, ObjectId, Property, StateFlag, Verb};
+use cohabit_cdf::{Action, ClassId, Fluid, ObjectId, Property, StateFlag, Verb};
 
 use crate::{
     ground::want::{Miss, Want},
@@ -14,7 +14,7 @@ use crate::{
         phrase::{Phrase, Place, RelationKind},
         slot::Role,
     },
-    words::intent::Intent,
+    words::{intent::Intent, lexicon::Preposition},
 };
 
 impl Planner<'_> {
@@ -49,6 +49,36 @@ impl Planner<'_> {
             _ => self.vessel_spoken_of(source)?,
         };
         self.pour(source, target)
+    }
+
+    /// `make tea`: boils water, and pours it into a cup.
+    pub(crate) fn add_tea(&mut self, settled: &Settled) -> Result<(), Fault> {
+        let kettles: Vec<ClassId> = self.in_itself(Intent::Tea).flat_map(|process| process.of.clone()).collect();
+        let kettle = self.nearest(&kettles).ok_or_else(|| self.need(&kettles, "I do not know where a kettle is."))?;
+        let named = match (&settled.goal, settled.objects.first()) {
+            (Some(Goal { preposition: Preposition::In, place: Place::Object(phrase), role }), _) => {
+                Some((phrase, *role))
+            }
+            (_, Some(phrase)) => Some((phrase, Role::Object(0))),
+            _ => None,
+        };
+        let named = named.map(|(phrase, role)| self.vessel(phrase, role, kettle)).transpose()?;
+        // `make tea in the kettle`: its water is boiled there.
+        let cup = named.filter(|cup| *cup != kettle).map_or_else(|| self.cup(kettle), Ok)?;
+        let is_hot = self.scene.object(kettle).is_some_and(|one| one.has(StateFlag::Hot) && one.fluid == Fluid::Water);
+        if !is_hot {
+            self.boil(kettle)?;
+        }
+        self.pour(kettle, cup)
+    }
+
+    /// Something empty that tea is made in.
+    fn cup(&self, kettle: ObjectId) -> Result<ObjectId, Fault> {
+        let cups: Vec<ClassId> = self.in_itself(Intent::Tea).flat_map(|process| process.object.clone()).collect();
+        let is_cup = |one: &&KnownObject| cups.contains(&one.class) && one.fluid == Fluid::None && one.id != kettle;
+        let is_fit = |one: &&KnownObject| is_cup(one) && !one.has(StateFlag::Broken) && !one.has(StateFlag::Dirty);
+        let cup = self.nearest_of(self.scene.objects.iter().filter(is_fit));
+        cup.ok_or_else(|| self.need(&cups, "I do not know where a clean cup is."))
     }
 
     /// What a phrase says to pour something into.
@@ -111,6 +141,44 @@ impl Planner<'_> {
         let says = format!("pouring {} into {}", self.what_is_in(source), self.the(target));
         self.push(Action::Interact { verb: Verb::Pour, object: target }, says);
         Ok(())
+    }
+
+    /// Takes something with `fluid` in it in the hand, and fills it first if there is none: what was named for it, or else nothing of the
+    /// classes `but`.
+    pub(crate) fn hold_vessel(&mut self, fluid: Fluid, named: Option<ObjectId>, but: &[ClassId]) -> Result<(), Fault> {
+        if let Some(vessel) = named {
+            return match self.scene.object(vessel).map_or(Fluid::None, |known| known.fluid) {
+                inside if inside == fluid => self.hold(vessel),
+                Fluid::None => self.fill(vessel, fluid),
+                other => {
+                    let text = format!("There is {} in {}.", other.name().to_lowercase(), self.the(vessel));
+                    Err(Fault::Cannot(text))
+                }
+            };
+        }
+        let carries = |object: &&KnownObject| {
+            let class = self.catalog.class(object.class);
+            let takes = class.has(Property::Fillable) && class.has(Property::Pickupable);
+            takes && !but.contains(&object.class) && !object.has(StateFlag::Broken)
+        };
+        let with = |inside: Fluid| self.scene.objects.iter().filter(carries).filter(move |one| one.fluid == inside);
+        let held = |one: &&KnownObject| Some(one.id) == self.scene.robot.held;
+        let pick = |inside: Fluid| {
+            let in_hand = with(inside).find(held).map(|one| one.id);
+            let made_for_it =
+                || self.nearest_of(with(inside).filter(|one| self.devices.watering_cans.contains(&one.class)));
+            in_hand.or_else(made_for_it).or_else(|| self.nearest_of(with(inside)))
+        };
+        if let Some(full) = pick(fluid) {
+            return self.hold(full);
+        }
+        let name = fluid.name().to_lowercase();
+        let Some(empty) = pick(Fluid::None) else {
+            return Err(
+                self.need(&self.devices.watering_cans, format!("I do not know of anything to carry {name} in."))
+            );
+        };
+        self.fill(empty, fluid)
     }
 
     /// What comes out of a thing that is poured: `the coffee`, `the cereal`.

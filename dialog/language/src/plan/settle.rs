@@ -46,7 +46,7 @@ pub(crate) struct Goal {
 
 /// Verbs whose objects go somewhere, or are worked on somewhere.
 const fn has_goal(intent: Intent) -> bool {
-    intent.is_about_held() || matches!(intent, Intent::Use | Intent::Print)
+    intent.is_about_held() || matches!(intent, Intent::Use | Intent::Print | Intent::Tea)
 }
 
 /// Verbs done `with` something.

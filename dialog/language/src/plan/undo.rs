@@ -6,6 +6,7 @@ use crate::{
     known::describe,
     plan::{Fault, Planner},
     understanding::Step,
+    words::intent::Intent,
 };
 
 impl Planner<'_> {
@@ -42,8 +43,15 @@ impl Planner<'_> {
                 self.pick_up(placed, false)?;
                 self.focus.origins = origins;
             }
-            Action::Interact { verb: Verb::Open, object } => self.interact(Verb::Close, object, "closing"),
-            Action::Interact { verb: Verb::Close, object } => self.interact(Verb::Open, object, "opening"),
+            // What was unfolded is folded again, not closed.
+            Action::Interact { verb: Verb::Open, object } => {
+                let does = if is_deed(step, Intent::Unfold) { Intent::Fold.doing() } else { "closing" };
+                self.interact(Verb::Close, object, does);
+            }
+            Action::Interact { verb: Verb::Close, object } => {
+                let does = if is_deed(step, Intent::Fold) { Intent::Unfold.doing() } else { "opening" };
+                self.interact(Verb::Open, object, does);
+            }
             Action::Interact { verb: Verb::Toggle, object } if self.stays_on(object) => {
                 self.interact(Verb::Toggle, object, "switching back");
             }
@@ -98,4 +106,9 @@ impl Planner<'_> {
         self.place_on(origin);
         Ok(())
     }
+}
+
+/// Whether that is what a step was called.
+fn is_deed(step: &Step, intent: Intent) -> bool {
+    step.says.starts_with(intent.doing())
 }

@@ -280,6 +280,16 @@ fn put_plainly(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
         let what_is = ["what", "is"].map(str::to_owned);
         return Some(what_is.iter().chain(&asked[length..]).cloned().collect());
     }
+    // `what is dirty?`: which things are.
+    if let [what, is, state @ ..] = asked
+        && what == "what"
+        && matches!(is.as_str(), "is" | "are")
+        && let Some((length, _)) = lexicon.states.longest(state)
+        && state[length..].iter().all(|word| token::is_punctuation(word))
+    {
+        let which = ["which", "things", "are"].map(str::to_owned);
+        return Some(which.iter().chain(state).cloned().collect());
+    }
     // `show me how many mugs there are`
     let is_wh = |word: &String| matches!(word.as_str(), "how" | "what" | "where" | "which" | "who" | "why");
     let shown = lexicon.tells.longest(asked).map(|(length, ())| &asked[length..]);

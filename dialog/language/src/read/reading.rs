@@ -342,7 +342,7 @@ pub(crate) fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
                 || clause.direction.is_none() && matches!(clause.amount, Some(Amount::Degrees(_) | Amount::Bare(_)))
         }
         Intent::Look => clause.direction.is_some() && is_whole(clause),
-        Intent::LookAround | Intent::Brew | Intent::Impossible => true,
+        Intent::LookAround | Intent::Brew | Intent::Tea | Intent::Impossible => true,
         Intent::PickUp => has_object && !clause.places.iter().any(|(preposition, _)| *preposition == Preposition::To),
         Intent::Place => has_object || !clause.places.is_empty(),
         Intent::Pour => has_object || !clause.places.is_empty(),

@@ -6,6 +6,7 @@ use crate::{
     words::{
         inflect::{self, stem},
         lexicon::{Lexicon, Preposition},
+        table::PhraseTable,
     },
 };
 
@@ -42,6 +43,7 @@ fn spoken(lexicon: &Lexicon, chunk: &[String]) -> Option<Vec<String>> {
         .or_else(|| infected(lexicon, chunk))
         .or_else(|| subjected(lexicon, chunk))
         .or_else(|| shot(lexicon, chunk))
+        .or_else(|| moved(lexicon, chunk))
 }
 
 /// `it is the cereal that I want`
@@ -79,6 +81,18 @@ fn shot(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let phrase = Reader::new(lexicon, device).phrase().filter(|phrase| !phrase.namings.is_empty())?;
     let is_carried = phrase.namings.iter().any(|naming| lexicon.carried.contains(&naming.class));
     (!is_carried).then(|| joined(&[&["use"], &texts(device), &["on"], &texts(thing)]))
+}
+
+/// `move the football out of the way`: it is to be put away. `hang the shirt up to dry`: it is to be dried.
+fn moved(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (_, rest) = words.split_first().filter(|(first, _)| lexicon.wishes.movers.contains(*first))?;
+    let (thing, after) = thing(lexicon, rest)?;
+    let ends =
+        |ends: &PhraseTable<()>| ends.longest(after).is_some_and(|(length, ())| is_end(lexicon, &after[length..]));
+    if ends(&lexicon.wishes.to_dry) {
+        return Some(joined(&[&["dry"], &texts(thing)]));
+    }
+    ends(&lexicon.wishes.asides).then(|| joined(&[&["put"], &texts(thing), &["away"]]))
 }
 
 /// `you left the microwave open`: it is to be as it was.
@@ -174,7 +188,8 @@ fn ordered(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let has_measure =
         rest.iter().take(3).any(|word| matches!(word.as_str(), "glass" | "cup" | "mug" | "drop" | "splash" | "pot"));
     let is_made = matches!(first.as_str(), "make" | "brew" | "do" | "prepare" | "have" | "cook" | "fix" | "produce");
-    let is_coffee = rest.iter().take(3).any(|word| word == "coffee") && rest.first().is_some_and(|word| word != "the");
+    let is_coffee = rest.iter().take(3).any(|word| word == "coffee" || word == "tea")
+        && rest.first().is_some_and(|word| word != "the");
     let is_some = rest.first().is_some_and(|word| word == "some") && rest.get(1).is_some_and(|word| word == "water");
     // `put water in the cup`
     let is_put = matches!(first.as_str(), "put" | "add" | "give")
@@ -187,7 +202,7 @@ fn drink(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let measured = words.iter().take_while(|word| lexicon.wishes.measures.contains(*word)).count();
     let rest = &words[measured..];
     let (length, after) = match rest.first()?.as_str() {
-        "toast" => (1, &rest[1..]),
+        "toast" | "tea" => (1, &rest[1..]),
         _ => {
             let (length, _) = lexicon.fluids.longest(rest)?;
             let noun = lexicon.classes.longest(rest).map_or(0, |(length, _)| length);
@@ -203,6 +218,8 @@ fn drink(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let place: Vec<&str> = if into { texts(&after[1..]) } else { vec!["a", "mug"] };
     Some(match what.as_str() {
         "toast" => joined(&[&["toast", "the", "bread"]]),
+        "tea" if into => joined(&[&["make", "tea", "in"], &place]),
+        "tea" => joined(&[&["make", "tea"]]),
         "milk" if into => joined(&[&["pour", "the", "milk", "into"], &place]),
         "milk" => return None,
         _ if what.ends_with("coffee") && !into => joined(&[&["make", "coffee"]]),

@@ -5,7 +5,7 @@ use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb, state::St
 use crate::{
     known::{Known, contents, describe, process::Devices},
     understanding::Step,
-    words::prose,
+    words::{intent::Intent, prose},
 };
 
 /// How a step that looks under a thing or behind it is called.
@@ -28,7 +28,7 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
         Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name_in(catalog)),
         Action::GoTo { target: GoToTarget::Point(_) } => match step.says.strip_prefix("bringing you ") {
             Some(what) => format!("here is {what}"),
-            None if step.says == "coming to you" => "here I am".to_owned(),
+            None if matches!(step.says.as_str(), "coming to you" | "following you") => "here I am".to_owned(),
             None => "I am back".to_owned(),
         },
         Action::GoTo { target: GoToTarget::Object(object) } => format!("I am at {}", the(object)),
@@ -62,6 +62,10 @@ fn interaction(
     verb: Verb,
     object: ObjectId,
 ) -> String {
+    if let Some(by_hand) = Intent::BY_HAND.into_iter().find(|by_hand| step.says.starts_with(by_hand.doing())) {
+        let done = by_hand.doing().replace("ing", "ed");
+        return format!("{the} is {done}");
+    }
     match verb {
         Verb::Open => format!("{the} is open"),
         Verb::Close => match scene.robot.held.filter(|held| *held != object) {

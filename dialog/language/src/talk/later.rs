@@ -2,13 +2,39 @@
 
 use crate::{
     context::{Context, Pending},
-    read::{clause::Clause, tidy},
-    talk::conversation::Conversation,
+    read::{clause::Clause, reader::Reader, tidy},
+    talk::{condition::trimmed, conversation::Conversation},
     understanding::Understanding,
-    words::{lexicon::Small, prose},
+    words::{lexicon::Small, prose, token},
 };
 
 impl Conversation<'_> {
+    /// `take the hammer and follow me`: once that is done.
+    pub(crate) fn follows_then(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
+        let is_joint = |word: &String| token::is_punctuation(word) || matches!(word.as_str(), "and" | "then");
+        let at = (1..words.len()).find(|at| is_joint(&words[at - 1]) && self.asks_to_follow(&words[*at..]))?;
+        let before = trimmed(&words[..at]);
+        if !self.is_request(before) {
+            return None;
+        }
+        let understanding = self.understand_all(tidy::tidied(self.lexicon, before), context);
+        Some(match &understanding {
+            Understanding::Answer { text, .. } => self.follow(context).after(text),
+            _ => context.keep(vec![token::sentence(&words[at..])], understanding),
+        })
+    }
+
+    /// `follow me`, `follow me to the kitchen`: where somebody goes, they are gone after.
+    pub(crate) fn asks_to_follow(&self, words: &[String]) -> bool {
+        let words = tidy::plain(words);
+        let Some((length, small)) = self.lexicon.small.longest(&words) else { return false };
+        let mut reader = Reader::new(self.lexicon, &words[length..]);
+        // `let us go to the kitchen` names where to go.
+        let is_way = matches!(words[length - 1].as_str(), "me" | "us") && reader.place().is_some();
+        reader.skip(|lexicon| &lexicon.trail);
+        small.contains(&Small::Follow) && (is_way || length > 1) && reader.is_done()
+    }
+
     /// What is left to do once a plan has ended: the search that it is a part of, or what is next.
     pub(crate) fn carry_on(&self, context: &mut Context) -> Option<Understanding> {
         let later = context.later.clone();

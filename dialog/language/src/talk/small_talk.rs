@@ -5,7 +5,7 @@ use crate::{
     read::{clause::Part, parts, question, tidy::plain},
     talk::conversation::Conversation,
     understanding::Understanding,
-    words::{lexicon::Small, question_kind::QuestionKind},
+    words::{lexicon::Small, question_kind::QuestionKind, token::MAX_CHARS},
 };
 
 impl Conversation<'_> {
@@ -89,6 +89,12 @@ impl Conversation<'_> {
         if is(Small::Mission) {
             return Some(self.pursue(context));
         }
+        if is(Small::Follow) || self.asks_to_follow(words) {
+            return Some(self.follow(context));
+        }
+        if is(Small::Aside) {
+            return Some(self.step_aside(context));
+        }
         if is(Small::Undo) || self.is_undo(words) {
             return Some(self.undo(context));
         }
@@ -103,6 +109,12 @@ impl Conversation<'_> {
         let is_called =
             || self.scene.person.is_some() && parts::parts(self.lexicon, self.catalog, words).iter().any(comes);
         self.chat(words).filter(|_| !is_called()).map(Understanding::answer)
+    }
+
+    /// `do not follow me any more`, to a robot that follows.
+    pub(crate) fn lets_go(&self, utterance: &str) -> bool {
+        let is_short = utterance.chars().nth(MAX_CHARS).is_none();
+        is_short && self.small(&self.lexicon.normalise(utterance).0).contains(&Small::Unfollow)
     }
 
     /// `undo the previous command`.

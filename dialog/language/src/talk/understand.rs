@@ -42,7 +42,15 @@ const NO_SECOND: [&str; 5] = ["what", "not", "no", "?", "something"];
 impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
         context.unwatched = None;
+        let followed = std::mem::take(&mut context.follows);
+        if followed && self.lets_go(utterance) {
+            context.sureness = 1.0;
+            return self.stopped("", context);
+        }
         let (understanding, sureness) = self.understand_surely(utterance, context);
+        // Who asks for something else is not followed any longer.
+        context.follows |=
+            followed && !matches!(understanding, Understanding::Plan { .. } | Understanding::Stop { .. });
         let understanding = if self.offers_two(utterance) { understanding.without_yes() } else { understanding };
         let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
         context.sureness = if is_lost { 0.0 } else { sureness };
@@ -128,7 +136,7 @@ impl Conversation<'_> {
             return Understanding::refusal("That is too much for me at once. Please say it in a few short sentences.");
         }
         let (words, repairs) = self.lexicon.normalise(utterance);
-        if let Some(understanding) = self.waits(&words, context) {
+        if let Some(understanding) = self.waits(&words, context).or_else(|| self.follows_then(&words, context)) {
             return understanding;
         }
         let words = tidy::tidied(self.lexicon, &words);

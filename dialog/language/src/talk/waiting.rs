@@ -51,11 +51,11 @@ impl Conversation<'_> {
     pub(crate) fn whether_waited(&self, done: &[String], context: &Context) -> Option<Understanding> {
         self.lexicon.waiting.waits.longest(done)?;
         let text = match &context.waited {
-            _ if context.awaits() => "Yes, I am waiting now.".to_owned(),
+            _ if !context.awaited.is_empty() => "Yes, I am waiting now.".to_owned(),
             Some(waited) => format!("Yes, I waited {waited}."),
             None => "No, I have waited for nothing.".to_owned(),
         };
-        Some(Understanding::whether(context.waited.is_some() || context.awaits(), text, Vec::new()))
+        Some(Understanding::whether(context.waited.is_some() || !context.awaited.is_empty(), text, Vec::new()))
     }
 
     /// Whether a text says how long to wait, or for what, and so is no stop.
@@ -88,7 +88,11 @@ impl Conversation<'_> {
         let is_over = |awaited: &Awaited| waited_s(awaited) >= f64::from(LONGEST_S.max(awaited.until.seconds()));
         let due = context.awaited.iter().position(is_due);
         let is_due = due.is_some();
-        let at = due.or_else(|| context.awaited.iter().position(is_over))?;
+        let Some(at) = due.or_else(|| context.awaited.iter().position(is_over)) else {
+            // `wait ten seconds`: where it is.
+            let stays = |awaited: &Awaited| awaited.then.is_empty() && matches!(awaited.until, Until::Seconds(_));
+            return if context.awaited.iter().any(stays) { None } else { self.catch_up(context) };
+        };
         let Awaited { until, then, .. } = context.awaited.remove(at);
         let words = until.in_words();
         let longest = Until::Seconds(LONGEST_S).in_words();
@@ -179,13 +183,19 @@ impl Conversation<'_> {
     fn awaits(&self, words: &[String]) -> Option<(Until, Vec<String>)> {
         let said = &self.lexicon.waiting;
         let waits = said.waits.longest(words).map_or(0, |(length, ())| length);
+        let tells = said.tells.longest(words).map_or(0, |(length, ())| length);
         let until = said.until.longest(&words[waits..]).filter(|_| waits > 0).map(|(length, ())| waits + length);
+        let told = said.whens.longest(&words[tells..]).filter(|_| tells > 0).map(|(length, ())| tells + length);
+        let until = until.or(told);
         let when = said.whens.longest(words).map(|(length, ())| length);
         let rest = &words[until.or(when)?..];
         let is_end = |word: &String| token::is_punctuation(word) || word == "then";
         let splits = |end: usize| {
             let then = trimmed(&rest[end..]);
-            let is_whole = until.is_some() && then.is_empty() || self.is_request(then);
+            // `when the kettle is hot, tell me`
+            let is_told = said.tells.exact(then).is_some();
+            let then = if is_told { &[][..] } else { then };
+            let is_whole = (is_told || until.is_some()) && then.is_empty() || self.is_request(then);
             let joint = |length: &usize| said.joints.exact(&rest[*length..end]).is_some();
             let end = (1..end).find(joint).unwrap_or(end);
             let claim = self.claim(&rest[..end], then).filter(|_| is_whole)?;

@@ -202,6 +202,11 @@ fn state_after(clause: &Clause) -> Option<(StateFlag, bool, [&'static str; 2])> 
         Intent::Clean => (StateFlag::Dirty, false, ["dirty", "clean"]),
         Intent::Heat => (StateFlag::Hot, true, ["hot", "not hot"]),
         Intent::Cool => (StateFlag::Cold, true, ["cold", "not cold"]),
+        Intent::Dry => (StateFlag::Wet, false, ["wet", "dry"]),
+        Intent::Iron => (StateFlag::Creased, false, ["creased", "smooth"]),
+        Intent::Water => (StateFlag::Wet, true, ["wet", "dry"]),
+        Intent::Fold => (StateFlag::Folded, true, ["folded", "not folded"]),
+        Intent::Unfold => (StateFlag::Folded, false, ["folded", "not folded"]),
         Intent::Toast => (StateFlag::Cooked, true, ["toasted", "not toasted"]),
         _ => return None,
     })

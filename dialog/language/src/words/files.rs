@@ -80,6 +80,9 @@ struct WordFile {
     again: Words,
     undo: Words,
     do_goal: Words,
+    follow: Words,
+    unfollow: Words,
+    aside: Words,
     do_mission: Words,
 }
 
@@ -255,6 +258,9 @@ impl Lexicon {
             (Small::Again, &file.again),
             (Small::Undo, &file.undo),
             (Small::Goal, &file.do_goal),
+            (Small::Follow, &file.follow),
+            (Small::Unfollow, &file.unfollow),
+            (Small::Aside, &file.aside),
             (Small::Mission, &file.do_mission),
         ];
         for (small, list) in lists {
@@ -376,6 +382,7 @@ impl Lexicon {
         self.classes.words().for_each(&mut learn);
         self.brings_about.words().for_each(&mut learn);
         self.wishes.shooters.words().chain(&self.wishes.subjecters).chain(&self.wishes.infecters).for_each(&mut learn);
+        self.wishes.asides.words().chain(self.wishes.to_dry.words()).chain(&self.wishes.movers).for_each(&mut learn);
         self.kinds.iter().for_each(&mut learn);
         self.talk.words().chain(self.people.words()).for_each(|word| vocabulary.learn_talk(word));
         self.chat.words().for_each(|word| vocabulary.learn_plain(word));

@@ -47,6 +47,13 @@ pub(crate) enum Intent {
     Resize,
     Shrink,
     Brew,
+    Dry,
+    Iron,
+    Fold,
+    Unfold,
+    Water,
+    /// To pour boiling water into a cup.
+    Tea,
     Swap,
     Use,
     Impossible,
@@ -70,10 +77,11 @@ impl Intent {
                 &[Property::Pickupable]
             }
             Self::Open | Self::Close => &[Property::Openable],
+            Self::Dry | Self::Iron | Self::Fold | Self::Unfold => &[Property::Dirtyable],
             Self::Break => &[Property::Breakable],
             Self::Cut => &[Property::Cuttable],
             Self::Toggle | Self::TurnOn | Self::TurnOff => &[Property::Toggleable],
-            Self::Fill | Self::Pour | Self::Brew => &[Property::Fillable],
+            Self::Fill | Self::Pour | Self::Brew | Self::Tea => &[Property::Fillable],
             _ => &[],
         }
     }
@@ -102,6 +110,11 @@ impl Intent {
                 | Self::Heat
                 | Self::Cool
                 | Self::Repair
+                | Self::Dry
+                | Self::Iron
+                | Self::Fold
+                | Self::Unfold
+                | Self::Water
         )
     }
 
@@ -126,6 +139,9 @@ impl Intent {
                 | Self::Resize
                 | Self::Shrink
                 | Self::Brew
+                | Self::Dry
+                | Self::Fold
+                | Self::Unfold
         )
     }
 
@@ -150,7 +166,26 @@ impl Intent {
                 | Self::Resize
                 | Self::Shrink
                 | Self::Brew
+                | Self::Dry
+                | Self::Iron
+                | Self::Fold
+                | Self::Unfold
+                | Self::Water
         )
+    }
+
+    /// What is done by hand with an action that is called otherwise by itself: to fold is to close.
+    pub(crate) const BY_HAND: [Self; 4] = [Self::Iron, Self::Fold, Self::Unfold, Self::Water];
+
+    /// How such a deed is called while it is done.
+    pub(crate) const fn doing(self) -> &'static str {
+        match self {
+            Self::Iron => "ironing",
+            Self::Fold => "folding",
+            Self::Unfold => "unfolding",
+            Self::Water => "watering",
+            _ => "doing",
+        }
     }
 
     /// The plain form of the verb, for questions and refusals.
@@ -193,6 +228,12 @@ impl Intent {
             Self::Resize => "make bigger",
             Self::Shrink => "make smaller",
             Self::Brew => "make coffee in",
+            Self::Dry => "dry",
+            Self::Iron => "iron",
+            Self::Fold => "fold",
+            Self::Unfold => "unfold",
+            Self::Water => "water",
+            Self::Tea => "make tea in",
             Self::Swap => "swap",
             Self::Use => "use",
             Self::Impossible => "do that to",

@@ -157,6 +157,12 @@ pub(crate) enum Small {
     /// Do what the mission wants next.
     Goal,
     Mission,
+    /// Go where the person goes.
+    Follow,
+    /// Go there no longer.
+    Unfollow,
+    /// Get out of somebody's way.
+    Aside,
 }
 
 /// The tables.

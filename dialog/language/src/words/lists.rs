@@ -50,6 +50,7 @@ pub(crate) struct Fillers {
 #[serde(deny_unknown_fields)]
 pub(crate) struct WaitingWords {
     pub(crate) waits: PhraseTable<()>,
+    pub(crate) tells: PhraseTable<()>,
     pub(crate) delays: PhraseTable<()>,
     pub(crate) about: PhraseTable<()>,
     #[serde(deserialize_with = "table::of_meanings")]
@@ -79,6 +80,10 @@ pub(crate) struct Wishes {
     pub(crate) subjecters: BTreeSet<String>,
     pub(crate) infecters: BTreeSet<String>,
     pub(crate) shooters: PhraseTable<()>,
+    /// Verbs of moving a thing, and where to, if anywhere else will do.
+    pub(crate) movers: BTreeSet<String>,
+    pub(crate) asides: PhraseTable<()>,
+    pub(crate) to_dry: PhraseTable<()>,
 }
 
 /// The words of questions that want a yes or a no: `data/yes_no.toml` says what each list is.

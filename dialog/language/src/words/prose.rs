@@ -3,7 +3,7 @@
 use crate::words::token::NUMBERS;
 
 /// Nouns that take no article.
-const MASS: [&str; 8] = ["milk", "bread", "coffee", "water", "cereal", "toast", "jelly", "peanut butter"];
+const MASS: [&str; 9] = ["tea", "milk", "bread", "coffee", "water", "cereal", "toast", "jelly", "peanut butter"];
 
 /// Whether a name is of several things: `the glass doors`, not `the stack of papers`.
 fn is_plural(name: &str) -> bool {

@@ -250,6 +250,9 @@ pub(crate) fn set(object: &mut KnownObject, mark: &str) {
         "dirty" => StateFlag::Dirty,
         "on" => StateFlag::Toggled,
         "locked" => StateFlag::Locked,
+        "wet" => StateFlag::Wet,
+        "creased" => StateFlag::Creased,
+        "folded" => StateFlag::Folded,
         _ => panic!("unknown mark {mark}"),
     };
     object.flags.set(flag, true);
