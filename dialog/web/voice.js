@@ -164,8 +164,8 @@ export function stopListening() {
 }
 
 /** Nothing is heard any more; what people are to know of it stays. */
-function clearHearing(text = "") {
-  if (text || !byId("hearing").classList.contains("note")) showHearing(text);
+function clearHearing() {
+  if (!byId("hearing").classList.contains("note")) showHearing("");
 }
 
 function letGo() {
@@ -201,13 +201,14 @@ const unfinished = (text) => `${text.replace(/[\s.,;:!?…]+$/, "")}…`;
 /** The session tells how far it has heard. */
 export function takeHearing({ state, text, joins }) {
   // Who goes on with what can be changed yet has not said all of it.
-  if (state === "began" && joins) holdHeard();
+  if (state === "began" && joins) holdHeard(true);
   else if (state === "nothing" && pending?.isHeld) waitToSend();
   else if (state === "stopped") forgetHeard();
   if (state === "partial") showHearing(unfinished(text), "partial");
   else if (state === "began") showHearing("…", "partial");
   else {
-    clearHearing(state === "nothing" && mode === "tap" ? words("heard_nothing") : "");
+    if (state === "nothing" && mode === "tap") note(words("heard_nothing"));
+    else clearHearing();
     if (mode === "tap") stopListening();
   }
 }
@@ -246,11 +247,11 @@ export function takeDeaf() {
 /** What was heard can be changed for a moment, then it is said. */
 export function takeHeard({ number, text, edit_ms: editMs }) {
   if (mode === "tap") stopListening();
-  forgetHeard(false);
+  settleHeard();
   showHearing("");
   // Who types something else is not interrupted.
   const isFree = input.value.trim() === "";
-  pending = { number, text, isShown: isFree, isChanged: false, isHeld: false, editMs, timer: 0 };
+  pending = { number, text, isShown: isFree, isChanged: false, isHeld: false, goesOn: false, editMs, timer: 0 };
   waitToSend();
   if (!isFree) {
     showHearing(text, "partial");
@@ -260,9 +261,19 @@ export function takeHeard({ number, text, edit_ms: editMs }) {
   input.setSelectionRange(text.length, text.length);
 }
 
+/** More was heard: what was before it is a part of it, or is said now; what somebody is changing stays as if it had been typed. */
+function settleHeard() {
+  if (!pending) return;
+  if (pending.goesOn) forgetHeard(false);
+  else if (pending.isChanged) endEditing();
+  else sendHeard(pending.isShown ? input.value : pending.text, false);
+}
+
 /** What was heard is sent in a moment, unless somebody changes it or goes on. */
 function waitToSend() {
-  if (!pending || pending.isChanged) return;
+  if (!pending) return;
+  pending.goesOn = false;
+  if (pending.isChanged) return;
   const { text, isShown, editMs } = pending;
   pending.isHeld = false;
   clearTimeout(pending.timer);
@@ -272,17 +283,19 @@ function waitToSend() {
   composer.classList.add("editing");
 }
 
-/** What was heard waits until the rest of it was said. */
-function holdHeard() {
+/** What was heard waits until the rest of it was said, if somebody goes on, or until it was changed. */
+function holdHeard(goesOn = false) {
   if (!pending) return;
   pending.isHeld = true;
+  pending.goesOn ||= goesOn;
   clearTimeout(pending.timer);
   composer.classList.remove("editing");
 }
 
-/** Sends what was heard, as it reads now; `sure`, if somebody did that. Whether anything was heard. */
+/** Sends what was heard, as it reads now; `sure`, if somebody did that. Whether anything was sent. */
 export function sendHeard(text, sure = true) {
-  if (!pending) return false;
+  // What somebody types is something else, unless what was heard is shown there.
+  if (!pending || (sure && !pending.isShown)) return false;
   const { number, isShown } = pending;
   endEditing();
   if (isShown) input.value = "";

@@ -136,6 +136,27 @@ fn what_was_heard_can_be_changed_before_the_robot_hears_it() {
     play.end().unwrap();
 }
 
+#[test]
+fn what_was_heard_before_can_be_said_when_more_was_heard() {
+    let server = SpeechServer::start(&HEARD).unwrap();
+    let play = play(&server, &["--edit-heard", "30"]);
+    let mut page = Page::open(play.authority()).unwrap();
+    listen(&mut page, false);
+    let mut heard = Vec::new();
+    for seconds in [OFFICE_S, BOWL_S] {
+        page.send(&json!({ "type": "listen", "rate": 16_000, "held": true })).unwrap();
+        page.speak(&babble(seconds)).unwrap();
+        page.send(&json!({ "type": "listened" })).unwrap();
+        heard.push(page.wait("what was heard", |_, message| message["type"] == "heard").unwrap());
+    }
+    for (heard, part) in heard.iter().zip(["main office", "bowl"]) {
+        page.send(&json!({ "type": "heard", "number": heard["number"], "text": heard["text"], "sure": false }))
+            .unwrap();
+        page.wait("it to be said", |page, _| has_said(page, "person", part)).unwrap();
+    }
+    play.end().unwrap();
+}
+
 /// Text works, whatever came by the microphone.
 fn text_goes_on(page: &mut Page) {
     page.do_and_wait("what are you holding?").unwrap();
@@ -240,6 +261,29 @@ fn a_person_speaks_to_the_robot_in_a_browser() {
 
 #[test]
 #[cfg_attr(not(browser), ignore = "needs a browser")]
+fn what_is_typed_while_something_is_heard_is_sent_too_and_once() {
+    let server = SpeechServer::start(&HEARD).unwrap();
+    let sound = microphone("typed", &[silence(1.0), babble(OFFICE_S), silence(60.0)].concat());
+    let browser = Browser::start_speaking(&sound).unwrap();
+    let play = play(&server, &["--edit-heard", "10"]);
+    let mut tab = open(&browser, &play);
+    tab.evaluate("document.querySelector('#chat-input').value = 'what are you '").unwrap();
+    tab.evaluate("document.querySelector('#open-mic').click()").unwrap();
+    tab.wait_until("document.querySelector('#hearing-text').textContent === 'go to the main office'").unwrap();
+    let end = "(input => { input.focus(); input.setSelectionRange(99, 99); })(document.querySelector('#chat-input'))";
+    tab.evaluate(end).unwrap();
+    tab.type_and_enter("holding?").unwrap();
+    tab.wait_until("document.querySelector('#chat').innerText.includes('what are you holding?')").unwrap();
+    assert_eq!(tab.evaluate("document.querySelector('#chat-input').value").unwrap(), "");
+    // What was heard is said in its time.
+    tab.wait_until("document.querySelector('#chat').innerText.includes('go to the main office')").unwrap();
+    drop((tab, browser));
+    play.end().unwrap();
+    let _ = fs::remove_file(sound);
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_person_says_stop_in_a_browser_and_a_microphone_vanishes() {
     let server = SpeechServer::start(&HEARD).unwrap();
     let sound = microphone("stop", &[silence(3.0), babble(STOP_S), silence(60.0)].concat());
@@ -260,6 +304,22 @@ fn a_person_says_stop_in_a_browser_and_a_microphone_vanishes() {
     tab.type_and_enter("what are you holding?").unwrap();
     tab.wait_until("/hand is empty/.test([...document.querySelectorAll('#chat .from-robot')].at(-1).innerText)")
         .unwrap();
+    drop((tab, browser));
+    play.end().unwrap();
+    let _ = fs::remove_file(sound);
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn who_taps_and_speaks_in_vain_is_told_so() {
+    let server = SpeechServer::start(&[]).unwrap();
+    let sound = microphone("vain", &[silence(1.0), babble(OFFICE_S), silence(60.0)].concat());
+    let browser = Browser::start_speaking(&sound).unwrap();
+    let play = play(&server, &[]);
+    let mut tab = open(&browser, &play);
+    tab.evaluate("document.querySelector('#mic').click()").unwrap();
+    tab.wait_until("/I heard nothing/.test(document.querySelector('#hearing').innerText)").unwrap();
+    assert_eq!(tab.evaluate("window.cohabit.voice.mode").unwrap(), "off");
     drop((tab, browser));
     play.end().unwrap();
     let _ = fs::remove_file(sound);

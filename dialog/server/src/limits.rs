@@ -13,6 +13,9 @@ const ALL_PER_SECOND: f64 = 40.0;
 const DRIVES_PER_SECOND: f64 = 20.0;
 /// Pieces of sound a second: a page sends 32, and more after a moment in which it could not.
 const SOUNDS_PER_SECOND: f64 = 120.0;
+/// Pieces of sound at once: what was said while the network was gone for as long as a page may be silent
+/// ([`ServerLimits::silence`]) comes in a moment.
+const SOUNDS_AT_ONCE: f64 = 500.0;
 /// Times a second that a page tells what is being typed: where somebody pauses.
 const DRAFTS_PER_SECOND: f64 = 4.0;
 /// All other messages a second.
@@ -80,31 +83,37 @@ impl Limits {
         Self {
             all: Throttle::new(now, ALL_PER_SECOND),
             drives: Throttle::new(now, DRIVES_PER_SECOND),
-            sounds: Throttle::new(now, SOUNDS_PER_SECOND),
+            sounds: Throttle::with_at_once(now, SOUNDS_PER_SECOND, SOUNDS_AT_ONCE),
             drafts: Throttle::new(now, DRAFTS_PER_SECOND),
             others: Throttle::new(now, OTHERS_PER_SECOND),
         }
     }
 }
 
-/// Lets so many messages a second through, with as many in hand at first.
+/// Lets so many messages a second through, with some in hand.
 pub struct Throttle {
     per_second: f64,
+    at_once: f64,
     in_hand: f64,
     at: Instant,
 }
 
 impl Throttle {
-    /// A throttle that has let nothing through yet.
+    /// A throttle that has let nothing through yet, and lets as many through at once as in a second.
     fn new(now: Instant, per_second: f64) -> Self {
-        Self { per_second, in_hand: per_second, at: now }
+        Self::with_at_once(now, per_second, per_second)
+    }
+
+    /// One that lets so many through at once.
+    fn with_at_once(now: Instant, per_second: f64, at_once: f64) -> Self {
+        Self { per_second, at_once, in_hand: at_once, at: now }
     }
 
     /// Whether one more message may pass now.
     pub fn admits(&mut self, now: Instant) -> bool {
         let since = now.saturating_duration_since(self.at).as_secs_f64();
         self.at = now;
-        self.in_hand = (self.in_hand + since * self.per_second).min(self.per_second);
+        self.in_hand = (self.in_hand + since * self.per_second).min(self.at_once);
         let admitted = self.in_hand >= 1.0;
         if admitted {
             self.in_hand -= 1.0;
@@ -124,6 +133,17 @@ mod tests {
         assert_eq!((0..30).filter(|_| throttle.admits(start)).count(), 10);
         assert!(throttle.admits(start + Duration::from_millis(150)));
         assert!(!throttle.admits(start + Duration::from_millis(160)));
+    }
+
+    #[test]
+    fn sound_that_the_network_held_back_is_taken() {
+        let start = Instant::now();
+        let mut sounds = Limits::new(start).sounds;
+        // A piece lasts 32 ms. Those of ten seconds come as they are made, those of ten more all at once.
+        assert!((0..312).all(|piece| sounds.admits(start + Duration::from_millis(32 * piece))));
+        let after = start + Duration::from_secs(20);
+        assert!((0..312).all(|_| sounds.admits(after)));
+        assert!(!(0..1000).all(|_| sounds.admits(after)), "not any number");
     }
 
     #[test]

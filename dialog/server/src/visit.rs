@@ -5,7 +5,7 @@ mod hearing;
 mod message;
 mod telling;
 
-use std::{sync::Arc, time::Instant};
+use std::{collections::VecDeque, sync::Arc, time::Instant};
 
 use axum::extract::ws::{Message, WebSocket};
 use cohabit_bus::monotonic_nanos;
@@ -97,8 +97,8 @@ struct Visit {
     /// Where its sound goes, while it sends any.
     hearing: Option<Hearing>,
     ear: (UnboundedSender<FromEar>, UnboundedReceiver<FromEar>),
-    /// What was heard and can be changed yet, with its number.
-    heard: Option<(u64, Spoken)>,
+    /// What was heard and can be changed yet, each with its number.
+    heard: VecDeque<(u64, Spoken)>,
     heard_count: u64,
     /// What robots say aloud, where it is wanted.
     sounds: Option<(broadcast::Receiver<Arc<Vec<u8>>>, Hearer)>,
@@ -128,7 +128,7 @@ impl Visit {
             aim: Aim::new(),
             hearing: None,
             ear: unbounded_channel(),
-            heard: None,
+            heard: VecDeque::new(),
             heard_count: 0,
             sounds: None,
         }

@@ -136,8 +136,17 @@ pub struct Lack {
     pub part: Part,
     /// Why it could not be opened, and the remedy.
     pub why: String,
+    /// The remedy alone.
+    pub remedy: String,
     /// What there is instead.
     pub instead: String,
+}
+
+impl Lack {
+    fn of(part: Part, error: &SpeechError, instead: &str) -> Self {
+        let [remedy, instead] = [error.remedy(), instead].map(str::to_owned);
+        Self { part, why: error.to_string(), remedy, instead }
+    }
 }
 
 impl fmt::Display for Lack {
@@ -165,7 +174,7 @@ impl Engines {
         let mut lacks = Vec::new();
         let vad = vad(settings, &mut lacks);
         let recognizer = recognizer(settings).unwrap_or_else(|error| {
-            lacks.push(Lack { part: Part::Recognition, why: error.to_string(), instead: "text alone".into() });
+            lacks.push(Lack::of(Part::Recognition, &error, "text alone"));
             None
         });
         let synthesizer = synthesizer(settings, &mut lacks);
@@ -190,8 +199,8 @@ fn vad(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Box<dyn Vad> {
     match whole(&settings.folder, "silero/").and_then(|()| Silero::open(&settings.folder)) {
         Ok(silero) => Box::new(silero),
         Err(error) => {
-            let instead = "a simpler detector, which takes more noise for speech".into();
-            lacks.push(Lack { part: Part::VoiceActivity, why: error.to_string(), instead });
+            let instead = "a simpler detector, which takes more noise for speech";
+            lacks.push(Lack::of(Part::VoiceActivity, &error, instead));
             Box::new(Earshot::new())
         }
     }
@@ -207,21 +216,21 @@ fn recognizer(settings: &VoiceSettings) -> Result<Option<Box<dyn Recognizer>>, S
         }
         Source::Folder(folder) => {
             whole(&settings.folder, "runtime/")?;
-            Ok(Some(model::open(folder, &library, THREADS).map_err(|error| of_folder(error, folder))?))
+            Ok(Some(model::open(folder, &library, THREADS).map_err(|error| of_folder(error, folder, EXPORT))?))
         }
         Source::Wyoming(address) => Ok(Some(Box::new(Wyoming::open(address)?))),
         Source::Off => Ok(None),
     }
 }
 
-/// What is wrong in a folder of the user's own is not mended by installing.
-fn of_folder(error: SpeechError, folder: &Path) -> SpeechError {
+/// What is wrong in a folder of the user's own is not mended by installing, least of all by deleting it.
+fn of_folder(error: SpeechError, folder: &Path, remedy: &str) -> SpeechError {
     match error {
         SpeechError::Missing { path, .. } if path.starts_with(folder) => {
-            SpeechError::Missing { path, remedy: EXPORT.into() }
+            SpeechError::Missing { path, remedy: remedy.into() }
         }
         SpeechError::Broken { path, why, .. } if path.starts_with(folder) => {
-            SpeechError::Broken { path, why, remedy: EXPORT.into() }
+            SpeechError::Broken { path, why, remedy: remedy.into() }
         }
         other => other,
     }
@@ -236,7 +245,9 @@ fn synthesizer(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Option<Box<dy
         Source::Off => return None,
         Source::Wyoming(address) => Wyoming::open(address).map(|server| Box::new(server) as _),
         Source::Installed => piper(&settings.folder.join(piper::FOLDER), "piper/").map(|piper| Box::new(piper) as _),
-        Source::Folder(folder) => piper(folder, "runtime/").map(|piper| Box::new(piper) as _),
+        Source::Folder(folder) => piper(folder, "runtime/")
+            .map(|piper| Box::new(piper) as _)
+            .map_err(|error| of_folder(error, folder, OWN_VOICE)),
     };
     let error = match opened {
         Ok(synthesizer) => return Some(synthesizer),
@@ -244,7 +255,7 @@ fn synthesizer(settings: &VoiceSettings, lacks: &mut Vec<Lack>) -> Option<Box<dy
     };
     let espeak = Espeak::open();
     let instead = if espeak.is_ok() { "espeak-ng's own voice" } else { "the browser's own voice, where it has one" };
-    lacks.push(Lack { part: Part::Synthesis, why: error.to_string(), instead: instead.into() });
+    lacks.push(Lack::of(Part::Synthesis, &error, instead));
     espeak.ok().map(|espeak| Box::new(espeak) as _)
 }
 
@@ -254,6 +265,10 @@ const THREADS: usize = 1;
 /// How a file is said to be got of a folder with another recogniser.
 const EXPORT: &str = "COHABIT_RECOGNIZER names a folder with a Moonshine or Whisper model, as `optimum-cli export onnx` writes \
                       it; without it, what is installed is used";
+
+/// And of one with another voice.
+const OWN_VOICE: &str = "COHABIT_SYNTHESIZER names a folder with a Piper voice, its .onnx and its .onnx.json; without it, what \
+                         is installed is used";
 
 #[cfg(test)]
 mod tests {

@@ -61,3 +61,16 @@ pub enum SpeechError {
         remedy: &'static str,
     },
 }
+
+impl SpeechError {
+    /// What to do about it; nothing, where nothing is known to help.
+    #[must_use]
+    pub fn remedy(&self) -> &str {
+        match self {
+            Self::Missing { remedy, .. } | Self::Broken { remedy, .. } => remedy,
+            Self::Program { remedy, .. } | Self::Setting { remedy, .. } => remedy,
+            Self::Server { .. } => "see that the speech server runs, or name another",
+            Self::Engine { .. } | Self::Sound(_) => "",
+        }
+    }
+}

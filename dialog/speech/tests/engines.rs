@@ -326,6 +326,20 @@ fn what_is_spoken_is_heard_by_whisper() {
 }
 
 #[test]
+fn what_is_wrong_with_a_voice_of_ones_own_is_not_mended_by_installing() {
+    let folder = Folder::of("voice", &[("other.onnx", Vec::new())]);
+    for (own, expected) in [(folder.0.as_path(), "other.onnx.json"), (Path::new("/nowhere/voices"), "voice.onnx")] {
+        let synthesizer = Source::Folder(own.into());
+        let settings = VoiceSettings { recognizer: Source::Off, synthesizer, ..VoiceSettings::installed("/nowhere") };
+        let lacks = Engines::open(&settings).lacks;
+        let lack = lacks.iter().find(|lack| lack.part == Part::Synthesis).unwrap();
+        assert!(lack.why.contains(&own.join(expected).display().to_string()), "{lack}");
+        assert!(lack.why.contains("COHABIT_SYNTHESIZER names a folder"), "{lack}");
+        assert!(!lack.why.contains("delete") && !lack.why.contains("cohabit voice install"), "{lack}");
+    }
+}
+
+#[test]
 fn where_nothing_is_installed_that_is_said_and_how_to_mend_it() {
     let engines = Engines::open(&VoiceSettings::installed("/nowhere"));
     assert!(engines.recognizer.is_none());

@@ -122,7 +122,7 @@ fn verdict(findings: &[(&str, Finding)]) -> String {
 mod tests {
     use std::{fs, path::PathBuf};
 
-    use cohabit_speech::VoiceSettings;
+    use cohabit_speech::{Source, VoiceSettings};
 
     use super::*;
 
@@ -174,6 +174,16 @@ mod tests {
             assert_eq!(finding.state == State::Good, finding.costs.is_empty(), "{name}: {finding:?}");
         }
         assert!(verdict(&findings).starts_with("No session can run here until 1 thing is mended"));
+    }
+
+    #[test]
+    fn the_remedy_for_voice_is_that_of_what_it_lacks() {
+        let mut fake = Fake::new("server");
+        let server = Source::Wyoming("127.0.0.1:9".to_owned());
+        let settings = VoiceSettings::installed(fake.machine.root.join("voice"));
+        fake.machine.voice = Ok(VoiceSettings { recognizer: server, synthesizer: Source::Off, ..settings });
+        let remedy = speech::voice(&fake.machine).remedy;
+        assert!(remedy.contains("see that the speech server runs") && !remedy.contains("install"), "{remedy}");
     }
 
     #[test]

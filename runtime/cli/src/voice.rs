@@ -3,7 +3,10 @@
 use std::{path::PathBuf, time::Duration};
 
 use cohabit_dialog::{VoiceConfig, VoiceSettings};
-use cohabit_speech::install::{self, Doing, InstallError, Package, Pip, Progress};
+use cohabit_speech::{
+    Engines,
+    install::{self, Doing, InstallError, Package, Pip, Progress},
+};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{failure::bad_input, terminal::shown};
@@ -63,7 +66,12 @@ impl Install {
             InstallError::File { .. } | InstallError::Pip { .. } => anyhow::Error::new(error),
             other => bad_input(other),
         })?;
-        println!("Sessions that start from now on hear and speak; `cohabit doctor` says how.");
+        // What it takes besides, such as a program, is told now, not when somebody waits for an answer.
+        let lacks = Engines::open(&VoiceSettings::installed(folder)).lacks;
+        lacks.iter().for_each(|lack| println!("{}", shown(lack)));
+        if lacks.is_empty() {
+            println!("Sessions that start from now on hear and speak; `cohabit doctor` says how.");
+        }
         Ok(())
     }
 }

@@ -16,6 +16,9 @@ use crate::{
     voice::{Audience, EarAt, FromEar, Hearer, Hearing},
 };
 
+/// So much of what was heard can be changed yet; the page forgets without a word what somebody went on with.
+const MOST_HEARD: usize = 8;
+
 impl Visit {
     /// Listens to the page's microphone from now on.
     pub(super) fn begin_listening(&mut self, rate: u32, held: bool) -> Result<(), String> {
@@ -96,7 +99,10 @@ impl Visit {
         self.heard_count += 1;
         let text = spoken.first().unwrap_or_default();
         let told = tell(&page::heard(self.heard_count, text, self.live.voice.config.edit.as_millis()));
-        self.heard = Some((self.heard_count, *spoken));
+        self.heard.push_back((self.heard_count, *spoken));
+        if self.heard.len() > MOST_HEARD {
+            self.heard.pop_front();
+        }
         told
     }
 
@@ -108,7 +114,8 @@ impl Visit {
         sure: bool,
         received_nanos: u64,
     ) -> Result<(), String> {
-        let Some((_, spoken)) = self.heard.take_if(|(heard, _)| *heard == number) else { return Ok(()) };
+        let place = self.heard.iter().position(|(heard, _)| *heard == number);
+        let Some((_, spoken)) = place.and_then(|place| self.heard.remove(place)) else { return Ok(()) };
         if let Some(hearing) = &self.hearing {
             // Where it cannot be told, what is said next joins this.
             let _ = hearing.part();

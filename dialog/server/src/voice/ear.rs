@@ -3,6 +3,7 @@
 //! A thread of its own listens to each page ([`listening`]), also for a stop within what is being said ([`stops`]), and
 //! passes the sound on to the bus ([`microphone`]).
 
+mod late;
 mod listening;
 mod microphone;
 mod stops;

@@ -47,10 +47,13 @@ impl Echo {
         }
     }
 
-    /// Whether a text that was heard from `began` on is what was being said then.
-    pub fn is_echo(&self, heard: &str, began: u64) -> bool {
+    /// Whether a text that was heard from `began` until `ended` is what was being said then. What begins after that, and goes on
+    /// when all of it has sounded, is somebody's who answers in its words.
+    pub fn is_echo(&self, heard: &str, [began, ended]: [u64; 2]) -> bool {
         let heard = words(heard);
-        !heard.is_empty() && self.during(began).any(|said| resembles(&heard, &said.words))
+        let may_be = |said: &&Said| began <= said.until || ended <= said.until.saturating_add(LATE_NANOS);
+        let mut said = self.during(began).filter(may_be);
+        !heard.is_empty() && said.any(|said| resembles(&heard, &said.words))
     }
 
     /// Whether what was being said then was such a text.
@@ -94,7 +97,9 @@ mod tests {
     fn the_robots_own_words_are_known_while_they_sound() {
         let mut echo = Echo::default();
         echo.note("OK, going to the break room and then picking up the bowl.", 10 * S, 14 * S);
-        let check = |heard: &str, at: u64, expected: bool| assert_eq!(echo.is_echo(heard, at), expected, "{heard}");
+        let check = |heard: &str, at: u64, expected: bool| {
+            assert_eq!(echo.is_echo(heard, [at, at + S]), expected, "{heard}");
+        };
         check("going to the break room", 11 * S, true);
         check("okay going to the brake room and then picking up the bowl", 10 * S, true);
         check("picking up the ball", 13 * S, true);
@@ -108,11 +113,28 @@ mod tests {
     }
 
     #[test]
+    fn who_answers_a_question_in_its_words_is_heard() {
+        let mut echo = Echo::default();
+        echo.note("Which one do you mean: the red mug or the blue mug?", 10 * S, 14 * S);
+        let check = |heard: &str, tenths: [u64; 2], expected: bool| {
+            assert_eq!(echo.is_echo(heard, tenths.map(|at| at * S / 10)), expected, "{heard}");
+        };
+        // Half a second after the question; the silence before it is counted, too.
+        check("the red mug", [142, 155], false);
+        check("red", [142, 149], false);
+        // The end of the question, as late as that may come back.
+        check("blue mug", [142, 146], true);
+        check("the red mug or the blue mug", [125, 146], true);
+        // Who answers while it still sounds cannot be told from it.
+        check("the blue mug", [135, 155], true);
+    }
+
+    #[test]
     fn what_was_broken_off_sounds_no_more() {
         let mut echo = Echo::default();
         echo.note("The fridge is closed. Shall I open it?", 10 * S, 13 * S);
         echo.cut(11 * S);
-        assert!(echo.is_echo("the fridge is closed", 10 * S));
-        assert!(!echo.is_echo("shall i open it", 12 * S));
+        assert!(echo.is_echo("the fridge is closed", [10 * S, 11 * S]));
+        assert!(!echo.is_echo("shall i open it", [12 * S, 13 * S]));
     }
 }

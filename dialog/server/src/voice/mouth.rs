@@ -142,9 +142,9 @@ impl Mouth {
         begins
     }
 
-    /// Whether what was heard from then on is what a robot was saying.
-    pub fn is_echo(&self, heard: &str, began_nanos: u64) -> bool {
-        lock(&self.echo).is_echo(heard, began_nanos)
+    /// Whether what was heard from then until then is what a robot was saying.
+    pub fn is_echo(&self, heard: &str, from_until_nanos: [u64; 2]) -> bool {
+        lock(&self.echo).is_echo(heard, from_until_nanos)
     }
 
     /// Whether what robots were saying then was such a text.
@@ -333,7 +333,7 @@ mod tests {
         }
         // A beep lasts 50 ms a letter: two before, and the rest.
         assert_eq!(samples, (2 + "goingtothebreakroom".len()) * 800);
-        assert!(mouth.is_echo("going to the break room", monotonic_nanos()));
+        assert!(mouth.is_echo("going to the break room", [monotonic_nanos(); 2]));
     }
 
     #[test]

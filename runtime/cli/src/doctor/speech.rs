@@ -28,7 +28,7 @@ fn judge(engines: &Engines, settings: &VoiceSettings) -> Finding {
         None => Finding::good(format!("{found} ({})", settings.folder.display())),
         Some(lack) => {
             let costs = if matters(&lack) { COSTS } else { "noise is more often taken for speech" };
-            Finding::costs(format!("{found}; {lack}"), costs, "`cohabit voice install`")
+            Finding::costs(format!("{found}; {lack}"), costs, lack.remedy.as_str())
         }
     }
 }

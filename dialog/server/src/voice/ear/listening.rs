@@ -1,6 +1,6 @@
 //! An ear at work: what a page sends becomes turns of speech, and what was said is told.
 
-use std::{sync::mpsc::Receiver, thread};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 
 use cohabit_bus::monotonic_nanos;
 use cohabit_language::{says_stop, says_stop_already};
@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::{
     EarAt, FromEar, ToEar,
+    late::Late,
     microphone::Microphone,
     stops::{StopWatch, may_answer_stop, recognition_of_rest},
 };
@@ -29,6 +30,7 @@ struct Listening<'a> {
     stops: StopWatch,
     microphone: Microphone,
     injector: Injector,
+    late: Late,
     /// When the newest sample came, ns.
     newest_nanos: u64,
     /// When somebody began to say what they are saying.
@@ -54,28 +56,35 @@ impl EarAt {
             stops,
             microphone: Microphone::new(&*self.voice.bus, self.visitor),
             injector: Injector::new(config.errors, config.seed ^ u64::from(self.visitor)),
+            late: Late::new(self.to.clone(), config.delay),
             newest_nanos: monotonic_nanos(),
             began_nanos: 0,
             likely: 0,
         };
         listening.expect();
-        while let Ok(next) = sent.recv() {
-            listening.take(next);
-        }
+        listening.listen(sent);
     }
 
     fn tell(&self, message: Value) {
         // A page that is gone need not be told.
         let _ = self.to.send(FromEar::Page(message));
     }
-
-    /// What becomes of what somebody says.
-    fn tell_state(&self, state: &str, text: &str) {
-        self.tell(json!({ "type": "hearing", "state": state, "text": text }));
-    }
 }
 
 impl Listening<'_> {
+    /// Takes what is sent, and tells what is due meanwhile.
+    fn listen(&mut self, sent: &Receiver<ToEar>) {
+        loop {
+            match sent.recv_timeout(self.late.pause()) {
+                Ok(next) => self.take(next),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            self.late.tell_due();
+        }
+        self.late.tell_rest();
+    }
+
     fn take(&mut self, next: ToEar) {
         let heard = self.pass_on(next);
         // Of a piece in which somebody begins, what was heard is theirs already.
@@ -92,10 +101,19 @@ impl Listening<'_> {
             Ok(heard) => heard.into_iter().for_each(|heard| self.hear(heard)),
             Err(error) => {
                 tracing::warn!("{error}");
-                self.at.tell(page::error(&format!("I could not hear that: {error}. You can type it.")));
-                self.at.tell_state("nothing", "");
+                self.tell(page::error(&format!("I could not hear that: {error}. You can type it.")));
+                self.tell_state("nothing", "");
             }
         }
+    }
+
+    fn tell(&mut self, message: Value) {
+        self.late.tell(FromEar::Page(message));
+    }
+
+    /// What becomes of what somebody says.
+    fn tell_state(&mut self, state: &str, text: &str) {
+        self.tell(json!({ "type": "hearing", "state": state, "text": text }));
     }
 
     /// Passes it on to the ear, after it was listened to for a stop.
@@ -128,13 +146,13 @@ impl Listening<'_> {
             Heard::Began { began, joins } => {
                 self.began_nanos = self.nanos_of(began);
                 self.microphone.begin_saying();
-                self.at.tell(json!({ "type": "hearing", "state": "began", "text": "", "joins": joins }));
+                self.tell(json!({ "type": "hearing", "state": "began", "text": "", "joins": joins }));
                 self.expect();
             }
             Heard::Partial { text } => {
                 self.stop_if(says_stop_already(&text));
                 if !self.stops.has_stopped() {
-                    self.at.tell_state("partial", &text);
+                    self.tell_state("partial", &text);
                 }
             }
             Heard::Said(utterance) => self.said(utterance),
@@ -159,7 +177,8 @@ impl Listening<'_> {
         tracing::info!("page {} says stop, heard {after_ms} ms after its first sound", self.at.visitor);
         self.at.talk.stop(self.at.visitor, now);
         // What was heard before and can be changed yet is not done either.
-        self.at.tell_state("stopped", "");
+        self.late.forget();
+        self.tell_state("stopped", "");
     }
 
     fn said(&mut self, utterance: Utterance) {
@@ -169,7 +188,8 @@ impl Listening<'_> {
             self.at.tell(page::error(TOO_LONG));
         }
         let mouth = &self.at.voice.mouth;
-        let is_own = mouth.is_echo(recognition.best(), began_nanos) || mouth.is_echo(&recognition.raw, began_nanos);
+        let is_echo = |text: &str| mouth.is_echo(text, [began_nanos, ended_nanos]);
+        let is_own = is_echo(recognition.best()) || is_echo(&recognition.raw);
         // Its own words stop it where they say stop, lest somebody's are taken for them.
         let stops = recognition.likely().any(says_stop);
         self.stop_if(stops);
@@ -178,17 +198,16 @@ impl Listening<'_> {
         }
         let request = if is_own { None } else { self.request(recognition, stops) };
         let Some(request) = request else {
-            self.at.tell_state(if stops { "stopped" } else { "nothing" }, "");
+            self.tell_state(if stops { "stopped" } else { "nothing" }, "");
             return;
         };
         let heard = self.injector.garble_recognition(&request);
-        thread::sleep(self.at.voice.config.delay);
-        let spoken = Spoken { began_nanos, ended_nanos, text_nanos: monotonic_nanos(), heard, settled: None };
+        let spoken = Spoken { began_nanos, ended_nanos, heard, ..Spoken::default() };
         if spoken.first().is_none() {
-            self.at.tell_state("nothing", "");
+            self.tell_state("nothing", "");
             return;
         }
-        let _ = self.at.to.send(FromEar::Said(Box::new(spoken)));
+        self.late.tell(FromEar::Said(Box::new(spoken)));
     }
 
     /// What of it the robots are to hear: all, or what is said besides a stop.

@@ -163,6 +163,19 @@ fn errors_and_delays_are_made_on_purpose_but_never_for_stop() {
 }
 
 #[test]
+fn stop_is_done_at_once_while_what_was_said_before_waits() {
+    let mut scene = Hall::new(fake::Reader::default(), |config| config.delay = Duration::from_secs(60));
+    scene.speak(&[fake::hidden("go to the main office"), silence(1.5), fake::hidden("stop"), silence(1.5)].concat());
+    scene.stopped();
+    assert_eq!(scene.stops(), 1);
+    // Nobody wants that any more.
+    let Hall { hearing, mut told, .. } = scene;
+    drop(hearing);
+    let rest = std::iter::from_fn(|| told.blocking_recv());
+    assert_eq!(rest.filter(|told| matches!(told, FromEar::Said(_))).count(), 0);
+}
+
+#[test]
 fn the_robots_own_voice_is_not_answered_but_stop_is_heard() {
     let mut scene = Hall::new(fake::Reader::default(), |_| ());
     scene.voice.mouth.note_own_voice(Some("OK, going to the main office."), monotonic_nanos());
