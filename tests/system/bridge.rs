@@ -285,3 +285,23 @@ fn a_bridge_to_nowhere_says_why() {
     check(&["--session", &play.session], "the session is in lock-step");
     play.end().unwrap();
 }
+
+#[test]
+fn calls_of_a_session_that_has_ended_say_so() {
+    let mut play = Play::start(COHABIT, &[]).unwrap();
+    let mut client = Client::start(&play.session, &[]);
+    client.done("turn", json!({ "yaw_rad": 0.1 }));
+    let waits = client.begin_call("wait", json!({ "seconds": 50 }));
+    client.done("listen", json!({}));
+    // The client and its bridge outlive the session.
+    play.signal_supervisor(Signal::INT).unwrap();
+    assert!(play.wait_for_end().unwrap().success());
+    let waited = client.end_call(waits);
+    assert!(waited.is_refusal && waited.text.contains("the session has ended"), "{}", waited.text);
+    let turn = json!({ "yaw_rad": 0.1 });
+    for (tool, arguments) in [("turn", turn), ("say", json!({ "text": "hello" })), ("look", json!({}))] {
+        let said = client.call(tool, arguments);
+        assert!(said.is_refusal && said.text.contains("the session has ended"), "{tool}: {}", said.text);
+    }
+    client.leave();
+}

@@ -31,6 +31,8 @@ const NAP: Duration = Duration::from_millis(10);
 const DOZE: Duration = Duration::from_millis(100);
 /// Why nothing can be done for now.
 const NOWHERE: &str = "the body is between two rooms: try again in a moment";
+/// The same, for ever.
+const OVER: &str = "the session has ended: start one of this name again, and then this server of tools";
 
 /// A client, and the body that it plays.
 pub(crate) struct Bridge<'a> {
@@ -142,7 +144,10 @@ impl<'a> Bridge<'a> {
     }
 
     fn go_on(&mut self, came: &Came) -> Result<(), BridgeError> {
-        self.peer.take_in()?;
+        // Of a session that has ended there is nothing more to take in.
+        if !self.peer.is_over() {
+            self.peer.take_in()?;
+        }
         if let Came::Line(line) = came {
             self.hear(line)?;
         }
@@ -194,6 +199,9 @@ impl<'a> Bridge<'a> {
         let Some(tool) = self.tools.iter().find(|tool| tool.name == name) else {
             return Ok(refused(format!("there is no tool `{name}`")));
         };
+        if self.peer.is_over() {
+            return Ok(refused(OVER));
+        }
         let kind = tool.kind;
         let given = match tool.read(arguments) {
             Ok(given) => given,
@@ -303,11 +311,13 @@ impl<'a> Bridge<'a> {
         Ok(done(lines.join("\n")))
     }
 
-    /// Answers the calls whose time has come.
+    /// Answers the calls whose time has come: all of them, once nobody is there who could do anything about them.
     fn settle(&mut self) -> Result<(), BridgeError> {
+        let is_over = !self.waiting.is_empty() && self.peer.is_over();
         for mut one in std::mem::take(&mut self.waiting) {
             let is_late = Instant::now() >= one.until;
-            match self.progress(&mut one.wait, is_late)? {
+            let next = if is_over { Some(refused(OVER)) } else { self.progress(&mut one.wait, is_late)? };
+            match next {
                 Some(Next::Said(said)) => self.outlet.send(&answer(&one.id, said.json()))?,
                 Some(Next::Waits(wait, patience)) => {
                     self.waiting.push(Waiting { id: one.id, until: Instant::now() + patience, wait });

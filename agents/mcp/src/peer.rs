@@ -11,7 +11,7 @@ use std::{
 
 use cohabit_agent::{Client, Eyes, Outcome, outcome};
 use cohabit_bus::{
-    Inbox, Publisher, Sample, Topic, Transport, Wake,
+    Inbox, Publisher, Sample, Topic, Transport, Wake, is_alive,
     message::{DialogKind, DialogMessage, DialogView, Malformed, MissionMessage, StateView},
     monotonic_nanos,
 };
@@ -125,6 +125,11 @@ impl<'a> Peer<'a> {
     /// The tick of the newest state.
     pub fn tick(&self) -> u64 {
         self.newest.envelope().tick
+    }
+
+    /// Whether its simulator has ended, and the session with it.
+    pub fn is_over(&self) -> bool {
+        !is_alive(self.newest.envelope().run)
     }
 
     /// All there is, as language speaks of it; nothing, where the body is not in any room.

@@ -53,12 +53,14 @@ impl Things {
         }
     }
 
+    /// The room that is called so. What is the name of one is no other word for another, as where the robot understands people: the
+    /// kitchen of a home is not the break room of an office.
     fn room(&self, text: &str) -> Option<RoomId> {
         let text = bare(text);
-        let is_called = |name: &str| name.eq_ignore_ascii_case(&text);
-        let rooms = self.language.catalog().rooms().all();
-        let found = rooms.iter().find(|room| is_called(room.id.id()) || room.names().any(is_called));
-        found.map(|room| room.id)
+        let rooms = self.language.catalog().rooms();
+        let is_said_for = |word: &String| word.eq_ignore_ascii_case(&text);
+        let by_word = || rooms.all().iter().find(|room| room.words.iter().any(is_said_for)).map(|room| room.id);
+        rooms.find(&text).or_else(by_word)
     }
 
     /// All things that are meant, the likeliest first.
@@ -124,6 +126,8 @@ fn all(scene: &Known, is: impl Fn(&KnownObject) -> bool) -> Vec<ObjectId> {
 
 #[cfg(test)]
 mod tests {
+    use cohabit_cdf::{WorldData, WorldPack};
+
     use super::*;
     use crate::scene::scene;
 
@@ -195,5 +199,21 @@ mod tests {
             assert_eq!(things.place(text, &scene), Ok(GoToTarget::Room(RoomId::BREAK_ROOM)), "{text}");
         }
         assert_eq!(things.place("bowl", &scene), Ok(GoToTarget::Object(ObjectId(2))));
+    }
+
+    #[test]
+    fn the_name_of_a_room_is_no_other_word_for_another() {
+        let pack = WorldPack::builtin("homes").unwrap();
+        let catalog = Arc::clone(WorldData::layered(vec![pack]).unwrap().catalog());
+        let (things, scene) = (Things::new(&catalog), scene(&catalog));
+        for (text, id) in [
+            ("Kitchen", "Kitchen"),
+            ("the kitchen", "Kitchen"),
+            ("dining room", "DiningRoom"),
+            ("sitting room", "LivingRoom"),
+            ("cafeteria", "BreakRoom"),
+        ] {
+            assert_eq!(things.place(text, &scene), Ok(GoToTarget::Room(RoomId::new(id).unwrap())), "{text}");
+        }
     }
 }

@@ -53,6 +53,12 @@ impl Errand {
                 self.stands_at = Some(target);
                 return Some(Progress::Then(then));
             }
+            // Nobody walks to what is in a hand. It may be in this very one, if others put it there.
+            Doing::Approach { then, .. } if status == Status::InvalidCommand && self.holds.is_none() => {
+                self.leave_place();
+                self.doing = Some(Doing::Act(then));
+                return Some(Progress::Then(then));
+            }
             Doing::Approach { .. } => self.leave_place(),
             Doing::Act(action) => self.learn(action, status.is_success()),
         }
@@ -76,10 +82,16 @@ impl Errand {
         self.stands_at = None;
     }
 
+    /// Others command the body, or have commanded it: where it stands and what its hand holds is theirs to say.
+    pub const fn forget(&mut self) {
+        self.stands_at = None;
+        self.holds = None;
+    }
+
     /// There is no errand any more: others command the body.
     pub const fn give_up(&mut self) {
         self.doing = None;
-        self.leave_place();
+        self.forget();
     }
 
     fn learn(&mut self, action: Action, success: bool) {
@@ -136,6 +148,23 @@ mod tests {
         assert_eq!(errand.hear(Status::UnsupportedNavigation), Some(Progress::Over));
         assert!(!errand.is_under_way());
         assert_eq!(errand.hear(OK), None);
+    }
+
+    #[test]
+    fn what_others_took_into_the_hand_or_out_of_it_is_not_known() {
+        let examine = Action::Interact { verb: Verb::Examine, object: MUG };
+        let mut errand = Errand::default();
+        errand.begin(PICK);
+        errand.hear(OK);
+        errand.hear(OK);
+        // Others put it down somewhere: it has to be walked to.
+        errand.forget();
+        assert_eq!((errand.holds(), errand.begin(PICK)), (None, go(MUG)));
+        // Or they did not, and it is in the hand: there is nowhere to walk to.
+        errand.give_up();
+        assert_eq!(errand.begin(examine), go(MUG));
+        assert_eq!(errand.hear(Status::InvalidCommand), Some(Progress::Then(examine)));
+        assert_eq!(errand.hear(OK), Some(Progress::Over));
     }
 
     #[test]

@@ -14,4 +14,12 @@ pub enum PeerError {
     /// The session has no such camera.
     #[error("body {0} has no camera of its own: bodies count from 0")]
     NoCamera(u32),
+    /// The session has no such body.
+    #[error("there is no body {body}: the session has bodies 0 to {last}; `--body robot` adds one")]
+    NoBody {
+        /// The body that was asked for.
+        body: u32,
+        /// The last one that there is.
+        last: usize,
+    },
 }

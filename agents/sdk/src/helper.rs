@@ -16,7 +16,7 @@ use crate::{
     memory::{Memory, Remembered, flags, level_m},
 };
 use roam::Rounds;
-use rules::{Lies, RULES, Rule, TABLES, Then, Wanted, When};
+use rules::{Lies, RULES, Rule, Then, Wanted, When, is_table};
 
 /// It looks so often, in ticks.
 const LOOK_EVERY: u64 = 12;
@@ -139,7 +139,7 @@ impl Helper {
             When::PersonInTheWay => self.make_way(rule, own, deeds),
             When::HandFull if own.held == NONE => false,
             When::HandFull => {
-                let table = self.nearest(own, |_, class| TABLES.contains(&class.id.as_str()));
+                let table = self.nearest(own, |_, class| is_table(class));
                 table.is_some_and(|table| self.handle(rule, table, deeds))
             }
             When::Knows(wanted) => {

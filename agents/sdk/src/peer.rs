@@ -13,7 +13,7 @@ use cohabit_bus::{
     message::{DialogKind, DialogView, EventKind, EventMessage, Malformed, MissionMessage, StateView},
     monotonic_nanos,
 };
-use cohabit_cdf::Catalog;
+use cohabit_cdf::{Catalog, Status};
 
 use crate::{
     agent::{Agent, Deed, Heard, Now, Senses, TICKS_PER_SECOND},
@@ -58,6 +58,10 @@ pub fn run_in(
 ) -> Result<(), PeerError> {
     let Some(mission) = wait_for_mission(bus, stop)? else { return Ok(()) };
     let Some(world) = World::look_at(bus, stop)? else { return Ok(()) };
+    let bodies = StateView::new(world.newest.payload())?.bodies;
+    if bodies.iter().all(|record| record.body != body) {
+        return Err(PeerError::NoBody { body, last: bodies.len().saturating_sub(1) });
+    }
     let mut mind = Mind::join(catalog, agent, body, bus, mission.header.lock_step == 1, world)?;
     mind.claim()?;
     while !stop.load(Ordering::Relaxed) {
@@ -247,6 +251,9 @@ impl<'a> Mind<'a> {
             return self.hear_commander(event);
         }
         let Some(Outcome { command, status, detail, .. }) = outcome(envelope, event) else { return Ok(()) };
+        if command == self.claim {
+            return self.hear_claim(status, &detail);
+        }
         if let Some(past) = &mut self.past {
             past.note_outcome(event.turn, status, &detail);
         } else if self.act == Some(command) {
@@ -254,7 +261,17 @@ impl<'a> Mind<'a> {
             // What came of an act is worth a look.
             self.rests_until = 0;
             self.hear(&Heard::Outcome { status, detail: &detail })?;
-        } else if command == self.claim && !status.is_success() && std::mem::replace(&mut self.hopes, false) {
+        }
+        Ok(())
+    }
+
+    /// What came of its claim, also where it still takes in what was before it. Whoever started it sees nothing else of a refusal.
+    fn hear_claim(&mut self, status: Status, detail: &str) -> Result<(), PeerError> {
+        if status.is_success() {
+            return Ok(());
+        }
+        tracing::warn!("{detail}; this agent waits until the body is free");
+        if std::mem::replace(&mut self.hopes, false) {
             self.hear(&Heard::Commands(false))?;
         }
         Ok(())

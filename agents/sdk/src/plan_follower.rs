@@ -81,8 +81,8 @@ impl Agent for PlanFollower {
                 (Some(Progress::Over), _) => self.end_step(status, detail, deeds),
                 _ => {}
             },
-            // Others may have moved the body meanwhile.
-            Heard::Commands(_) => self.errand.leave_place(),
+            // Others may have moved the body meanwhile, and what it holds.
+            Heard::Commands(_) => self.errand.forget(),
             Heard::Now(_) => deeds.push(Deed::Rest(LISTENS_EVERY)),
         }
     }

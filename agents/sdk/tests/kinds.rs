@@ -349,3 +349,50 @@ fn bodies_are_as_wide_as_pedestrians_take_them_for() {
     let radii: Vec<f32> = world.bodies().map(|body| body.radius_m).collect();
     assert_eq!(radii, [0.25, 0.22]);
 }
+
+/// Hears whether it commands its body, and does nothing.
+#[derive(Default)]
+struct Idler(Vec<bool>);
+
+impl Agent for Idler {
+    fn hear(&mut self, heard: &Heard<'_>, _: &mut Vec<Deed>) {
+        if let Heard::Commands(commands) = heard {
+            self.0.push(*commands);
+        }
+    }
+}
+
+#[test]
+fn an_agent_whose_body_is_not_to_be_had_hears_that() {
+    use cohabit_agent::{Client, PeerError};
+    let (bus, over, moment) = (Local::new(1), AtomicBool::new(false), std::time::Duration::from_secs(30));
+    let simulator = cast::simulator(&plan(2, 3, &[]), &bus);
+    // What an agent of that body hears within two seconds, and how it ended.
+    let hears = |body: u32| {
+        let (mut idler, stop) = (Idler::default(), AtomicBool::new(false));
+        let ended = thread::scope(|scope| {
+            let running = scope.spawn(|| cohabit_agent::run(&mut idler, body, &bus, &stop));
+            thread::sleep(std::time::Duration::from_secs(2));
+            stop.store(true, Ordering::Relaxed);
+            running.join().unwrap()
+        });
+        (idler.0, ended)
+    };
+    let (nowhere, taken) = thread::scope(|scope| {
+        scope.spawn(|| simulator.run(&over));
+        let nowhere = hears(7).1;
+        let [mut first, mut other] = ["first", "other"].map(|peer| Client::join(&bus, 0, peer).unwrap());
+        let claimed = first.claim(false).unwrap();
+        first.outcome(claimed, moment).unwrap();
+        // That somebody commands the body was told so long ago that who joins late does not hear it any more.
+        for _ in 0..6 {
+            let refused: Vec<u64> = (0..100).map(|_| other.act(0, Action::Stop).unwrap()).collect();
+            other.outcome(refused[99], moment).unwrap();
+        }
+        let taken = hears(0).0;
+        over.store(true, Ordering::Relaxed);
+        (nowhere, taken)
+    });
+    assert!(matches!(nowhere, Err(PeerError::NoBody { body: 7, last: 0 })), "{nowhere:?}");
+    assert_eq!(taken, [false]);
+}

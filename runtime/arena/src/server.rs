@@ -20,8 +20,10 @@ use crate::{
 
 /// How often somebody who waits looks whether to stop.
 const LOOK_UP: Duration = Duration::from_millis(50);
-/// How long a client that is sent away may take to read why.
+/// How long a client that is sent away may be silent before its connection ends; also what is left for an answer as the arena ends.
 const LINGER: Duration = Duration::from_secs(1);
+/// How long a client that is sent away may go on to send until it reads why.
+const PARTING: Duration = Duration::from_secs(10);
 
 /// Answers all who connect to `listener`, until `stop`; then ends the game.
 ///
@@ -153,20 +155,33 @@ impl Office<'_> {
     /// Tells a client why it is not heard, and ends its connection.
     fn refuse(&self, stream: &mut TcpStream, why: String) -> io::Result<()> {
         self.send(stream, &Arena::refusal(why))?;
-        send_away(stream)
+        self.send_away(stream)
     }
 
-    /// Sends an answer, all of which must be taken in time.
+    /// Ends a connection so that the last answer still arrives: what the client sends meanwhile is thrown away.
+    fn send_away(&self, stream: &mut TcpStream) -> io::Result<()> {
+        stream.shutdown(Shutdown::Write)?;
+        stream.set_read_timeout(Some(LINGER))?;
+        let by = Instant::now() + PARTING;
+        let mut bytes = vec![0; 64 << 10];
+        while !self.stops() && Instant::now() < by && stream.read(&mut bytes).is_ok_and(|count| count > 0) {}
+        Ok(())
+    }
+
+    /// Sends an answer, all of which must be taken in time. Who does not read keeps nobody who ends the arena waiting.
     fn send(&self, stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
-        let by = Instant::now() + self.limits.answer;
+        let mut by = Instant::now() + self.limits.answer;
         let answer = framed(answer);
         let mut rest = &answer[..];
         while !rest.is_empty() {
+            if self.stops() {
+                by = by.min(Instant::now() + LINGER);
+            }
             let left = by.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 return Err(io::Error::new(ErrorKind::TimedOut, "it took too long to take an answer"));
             }
-            stream.set_write_timeout(Some(left))?;
+            stream.set_write_timeout(Some(left.min(LOOK_UP)))?;
             match stream.write(rest) {
                 Ok(0) => return Err(ErrorKind::WriteZero.into()),
                 Ok(count) => rest = &rest[count..],
@@ -180,19 +195,4 @@ impl Office<'_> {
 
 fn is_no_end(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
-}
-
-/// Ends a connection so that the last answer still arrives: what the client sends meanwhile is thrown away.
-fn send_away(stream: &mut TcpStream) -> io::Result<()> {
-    const MOST_READS: usize = 1000;
-    stream.shutdown(Shutdown::Write)?;
-    stream.set_read_timeout(Some(LINGER))?;
-    let mut bytes = vec![0; 64 << 10];
-    for _ in 0..MOST_READS {
-        if stream.read(&mut bytes).is_ok_and(|count| count > 0) {
-            continue;
-        }
-        break;
-    }
-    Ok(())
 }

@@ -10,7 +10,7 @@ use std::{
     process::Command,
     sync::atomic::{AtomicBool, Ordering},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use cohabit_arena::{ClientLimits, LONGEST, framed, serve_within};
@@ -214,6 +214,36 @@ fn a_client_that_takes_no_answer_is_lost() {
         while deaf.write_all(&batch).is_ok() {}
         assert_eq!(ask(&mut connect(address), &[])["lastActionSuccess"], "ArenaUnavailable");
     });
+}
+
+#[test]
+fn no_client_keeps_the_arena_from_ending() {
+    const SOON: Duration = Duration::from_secs(5);
+    let folder = Folder::new();
+    let (deaf, talkative, asked) = served(&folder, |address| {
+        let mut deaf = connect(address);
+        deaf.set_write_timeout(Some(Duration::from_secs(1))).unwrap();
+        // Answers are not read: at last neither side can write any more.
+        while deaf.write_all(&framed(b"[]")).is_ok() {}
+        let mut talkative = connect(address);
+        talkative.write_all(&u32::MAX.to_le_bytes()).unwrap();
+        receive(&mut talkative);
+        let talks = talkative.try_clone().unwrap();
+        let talking = thread::spawn(move || talk_on(talks, 2 * SOON));
+        (deaf, talking, Instant::now())
+    });
+    let took = asked.elapsed();
+    drop(deaf);
+    talkative.join().unwrap();
+    assert!(took < SOON, "{took:?}");
+}
+
+/// Goes on to send, though it was sent away.
+fn talk_on(mut stream: TcpStream, time: Duration) {
+    let until = Instant::now() + time;
+    while Instant::now() < until && stream.write_all(b" ").is_ok() {
+        thread::sleep(Duration::from_millis(100));
+    }
 }
 
 #[test]

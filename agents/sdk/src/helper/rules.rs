@@ -1,6 +1,6 @@
 //! What a helper does when: a table, of which the first rule that applies wins.
 
-use cohabit_cdf::{ActionKind, ActionTable, ObjectClass, Property, StateFlag, StateFlags};
+use cohabit_cdf::{ActionKind, ActionTable, ObjectClass, Property, StateFlag, StateFlags, catalog::Stands};
 
 /// One rule.
 pub(super) struct Rule {
@@ -89,23 +89,15 @@ pub(super) enum Then {
 
 /// What stands open as it should: the doors of rooms, and what is opened once and for all.
 const MAY_BE_OPEN: &[&str] = &["Door_01", "CandyBar_01", "MilkCarton_01"];
-/// Where things that lay on the floor are put.
-pub(super) const TABLES: &[&str] = &[
-    "AP_Prop_Desk_Blue",
-    "AP_Prop_Desk_Green",
-    "AP_Prop_Desk_Red",
-    "AP_Prop_Desk_Yellow",
-    "Desk_01",
-    "ManagerDesk",
-    "ReceptionDesk",
-    "SM_Prop_Table_02",
-    "TableRound_02",
-    "TableRoundSmall_02",
-    "Table_Metal_01",
-    "KitchenCounter01",
-    "CounterBase_03",
-    "KitchenCounterTop_02",
-];
+/// What people call the things that others are put on, in any world.
+const TABLES: [&str; 3] = ["table", "desk", "counter"];
+
+/// Whether things that lay on the floor are put on one: it stands there, is called so, and is no cupboard.
+pub(super) fn is_table(class: &ObjectClass) -> bool {
+    let is_called_so = |name: &String| TABLES.iter().any(|table| name.eq_ignore_ascii_case(table));
+    let is_open = class.has(Property::Receptacle) && !class.has(Property::Openable) && !class.has(Property::Pickupable);
+    is_open && class.stands == Stands::OnFloor && (is_called_so(&class.name) || class.words.iter().any(is_called_so))
+}
 
 /// The rules, the first one first.
 pub(super) const RULES: &[Rule] = {
@@ -146,18 +138,38 @@ pub(super) const RULES: &[Rule] = {
 
 #[cfg(test)]
 mod tests {
-    use cohabit_cdf::Catalog;
+    use cohabit_cdf::{Catalog, WorldData, WorldPack};
 
     use super::*;
 
     #[test]
     fn every_class_that_is_named_is_in_the_catalogue_and_affords_what_is_done_to_it() {
         let catalog = Catalog::builtin();
-        for (classes, property) in [(MAY_BE_OPEN, Property::Openable), (TABLES, Property::Receptacle)] {
-            for class in classes {
-                let id = catalog.find(class).unwrap_or_else(|| panic!("{class}"));
-                assert!(catalog.class(id).has(property), "{class}");
-            }
+        for class in MAY_BE_OPEN {
+            let id = catalog.find(class).unwrap_or_else(|| panic!("{class}"));
+            assert!(catalog.class(id).has(Property::Openable), "{class}");
+        }
+    }
+
+    #[test]
+    fn there_are_tables_in_offices_and_in_homes() {
+        let pack = WorldPack::builtin("homes").unwrap();
+        let homes = WorldData::layered(vec![pack]).unwrap();
+        for (class, expected) in [
+            ("Desk_01", true),
+            ("ManagerDesk", true),
+            ("TableRound_02", true),
+            ("TableRoundSmall_02", true),
+            ("KitchenCounterTop_02", true),
+            ("Coffee_Table", true),
+            ("Dining_Table", true),
+            ("Garden_Table", true),
+            ("KitchenCounterDrawer_02", false),
+            ("Toy_Box", false),
+            ("Bowl_01", false),
+        ] {
+            let Some(id) = homes.catalog().find(class) else { panic!("{class}") };
+            assert_eq!(is_table(homes.catalog().class(id)), expected, "{class}");
         }
     }
 

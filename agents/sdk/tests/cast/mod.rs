@@ -59,6 +59,12 @@ fn meshes() -> Arc<MeshLibrary> {
     Arc::clone(MESHES.get_or_init(|| Arc::new(MeshLibrary::build(&catalog()).unwrap())))
 }
 
+/// The simulator of a plan.
+pub fn simulator(plan: &SessionPlan, bus: &dyn Transport) -> Simulator {
+    let renderer = Box::new(CpuRenderer::new(1));
+    Simulator::new(plan, plan.build().unwrap(), meshes(), renderer, bus).unwrap()
+}
+
 /// Plays until a tick with these agents in threads of their own, and `others` elsewhere.
 pub fn play(
     plan: SessionPlan,
@@ -67,9 +73,7 @@ pub fn play(
     others: usize,
     until: u64,
 ) -> Played {
-    let plan = plan.in_lock_step(agents.len() + others);
-    let renderer = Box::new(CpuRenderer::new(1));
-    let simulator = Simulator::new(&plan, plan.build().unwrap(), meshes(), renderer, bus).unwrap();
+    let simulator = simulator(&plan.in_lock_step(agents.len() + others), bus);
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
         let mut watcher = Watcher::new(bus);

@@ -2,8 +2,11 @@
 
 use std::path::PathBuf;
 
+use cohabit_agent::PeerError;
+
 use super::Joining;
 use crate::{
+    failure::bad_input,
     minds::{MindKind, expert},
     pedestrians::crowd,
     world::WorldPacks,
@@ -45,8 +48,16 @@ impl Agent {
         }
         let mind = mind.map_or_else(|| expert(catalog, self.body, &bus, &stop), |mind| Ok(Some(mind)))?;
         if let Some(mut mind) = mind {
-            cohabit_agent::run_in(catalog, &mut *mind, self.body, &bus, &stop)?;
+            cohabit_agent::run_in(catalog, &mut *mind, self.body, &bus, &stop).map_err(classified)?;
         }
         Ok(())
+    }
+}
+
+/// What an error is to whoever started the agent.
+fn classified(error: PeerError) -> anyhow::Error {
+    match error {
+        PeerError::NoBody { .. } => bad_input(error),
+        other => other.into(),
     }
 }

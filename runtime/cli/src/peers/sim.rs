@@ -42,7 +42,8 @@ pub struct Sim {
     branch: Option<BranchPoint>,
     /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
     /// `third-person`, `fixed` (x=, y=, z= in metres, yaw=, pitch= in degrees) or `top-down` (span= in metres); all have
-    /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
+    /// size=WxH, rate=, planes=color+depth+normals+ids, smooth=yes or no (smooth edges and outlines, for people; in lock-step
+    /// only those with smooth=no belong to the turns of agents), and most body= and fov=; as often as needed
     #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
     cameras: Vec<CameraPlan>,
     #[command(flatten)]
