@@ -21,8 +21,6 @@ const DOZE: Duration = Duration::from_millis(100);
 /// A frame that pages get.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown {
-    /// The latest command that had begun to move its body.
-    pub command: u64,
     /// When it was seen.
     pub tick: u64,
     /// When it was sent.
@@ -72,12 +70,12 @@ pub fn relay(
 fn show(sample: &Sample, (index, view): (u8, &Arc<View>)) -> Result<Shown, Malformed> {
     let frame = FrameView::new(sample.payload())?;
     let tick = sample.envelope().tick;
-    let shown = Shown { command: frame.header.command, tick, sent_nanos: sample.envelope().sent_nanos };
+    let shown = Shown { tick, sent_nanos: sample.envelope().sent_nanos };
     let Some(color) = frame.plane(Plane::Color) else { return Ok(shown) };
     // The pictures of a panorama stand one above the other.
     let size = [frame.header.width, frame.header.height * frame.header.views];
-    let FrameHeader { position_m, yaw_rad, pitch_rad, fov_y_rad, .. } = frame.header;
-    let eye = Eye { position_m, yaw_rad, pitch_rad, fov_y_rad };
+    let FrameHeader { position_m, yaw_rad, pitch_rad, fov_y_rad, views: pictures, .. } = frame.header;
+    let eye = Eye { position_m, yaw_rad, pitch_rad, fov_y_rad, pictures };
     match encode(index, tick, size, color) {
         Ok(bytes) => view.show(Arc::new(bytes), frame.ids().map(|ids| Ids::new(tick, size, ids).seen_from(eye))),
         Err(error) => tracing::warn!("a frame could not be encoded: {error}"),
@@ -105,6 +103,7 @@ pub fn encode_jpeg(bytes: &mut Vec<u8>, [width, height]: [u32; 2], rgba: &[u8]) 
 #[allow(clippy::unwrap_used)]
 mod tests {
     use std::{
+        f32::consts::{FRAC_PI_2, FRAC_PI_4},
         sync::atomic::{AtomicBool, Ordering},
         thread,
         time::Instant,
@@ -113,6 +112,26 @@ mod tests {
     use cohabit_bus::{CameraId, Local, message::FrameLayout};
 
     use super::*;
+
+    #[test]
+    fn the_floor_is_found_in_each_picture_of_a_panorama() {
+        let (bus, view) = (Local::new(1), Arc::new(View::new("around".parse().unwrap())));
+        let mut frames = bus.subscriber(Topic::Frames(view.camera)).unwrap();
+        let mut publisher = bus.publisher(Topic::Frames(view.camera)).unwrap();
+        let layout = FrameLayout::new(16, 16, 4, &[Plane::Color, Plane::Ids], 0);
+        let write = &mut |bytes: &mut [u8]| {
+            bytes.fill(0);
+            let header = layout.split_mut(bytes).header;
+            (header.position_m, header.pitch_rad, header.fov_y_rad) = ([1.0, 2.0, 1.0], -FRAC_PI_4, FRAC_PI_2);
+        };
+        publisher.send(1, layout.bytes(), write).unwrap();
+        show(&frames.receive().unwrap().unwrap(), (0, &view)).unwrap();
+        // East, south, west and north, a metre ahead each.
+        for (picture, expected) in (0_u8..).zip([[2.0, 2.0], [1.0, 1.0], [0.0, 2.0], [1.0, 3.0]]) {
+            let [x, y] = view.floor_at(1, [0.5, (f32::from(picture) + 0.5) / 4.0]).unwrap();
+            assert!((x - expected[0]).abs() < 1e-4 && (y - expected[1]).abs() < 1e-4, "{picture}: {x} {y}");
+        }
+    }
 
     /// Ends the relay also when a check fails.
     struct Over<'a>(&'a AtomicBool);

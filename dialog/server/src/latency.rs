@@ -50,7 +50,8 @@ impl Moments {
 #[derive(Debug, Default)]
 pub struct Latency {
     now: Moments,
-    first_command: u64,
+    /// The tick at which the world took up the first command of the newest turn.
+    moved_tick: Option<u64>,
     /// What the newest turn sounded like.
     pub heard: String,
 }
@@ -59,7 +60,7 @@ impl Latency {
     /// A turn was received and understood.
     pub fn begin(&mut self, turn: u64, received: u64, understood: u64) {
         self.now = Moments { turn, received, understood, ..Moments::default() };
-        self.first_command = 0;
+        self.moved_tick = None;
         self.heard.clear();
     }
 
@@ -89,20 +90,20 @@ impl Latency {
         Some(self.now)
     }
 
-    /// The world took up a command of `turn`. Gives the moments if that is news.
-    pub fn moved(&mut self, turn: u64, command: u64, nanos: u64) -> Option<Moments> {
+    /// The world took up a command of `turn` at that tick. Gives the moments if that is news.
+    pub fn moved(&mut self, turn: u64, tick: u64, nanos: u64) -> Option<Moments> {
         // What belongs to no turn, such as a person's own steps, has turn 0.
         if turn == 0 || turn != self.now.turn || self.now.moved != 0 {
             return None;
         }
         self.now.moved = nanos;
-        self.first_command = command;
+        self.moved_tick = Some(tick);
         Some(self.now)
     }
 
-    /// A frame was sent that shows the world after `command` began. Gives the moments if that is news.
-    pub fn shown(&mut self, command: u64, nanos: u64) -> Option<Moments> {
-        let first = self.first_command != 0 && command == self.first_command && self.now.shown == 0;
+    /// A frame was sent that shows the world as it was at that tick. Gives the moments if that is news.
+    pub fn shown(&mut self, tick: u64, nanos: u64) -> Option<Moments> {
+        let first = self.moved_tick.is_some_and(|moved| tick >= moved) && self.now.shown == 0;
         if !first {
             return None;
         }
@@ -143,6 +144,17 @@ mod tests {
             [1_000_000, 2_000_000, 3_000_000, 5_000_000, 6_000_000]
         );
         assert_eq!(latency.drawn(3, 7_000_000), None);
+    }
+
+    /// By then the body, or another one, may have begun something else.
+    #[test]
+    fn the_first_frame_since_then_shows_the_motion_whatever_began_meanwhile() {
+        let mut latency = Latency::default();
+        latency.begin(3, 1_000_000, 2_000_000);
+        assert!(latency.moved(3, 60, 3_000_000).is_some());
+        assert_eq!(latency.shown(59, 4_000_000), None, "it was seen before");
+        assert_eq!(latency.shown(62, 5_000_000).map(|moments| moments.shown), Some(5_000_000));
+        assert_eq!(latency.shown(63, 6_000_000), None, "only the first");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::{
     collections::VecDeque,
+    f32::consts::FRAC_PI_2,
     sync::{
         Arc, Condvar, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicUsize, Ordering},
@@ -39,6 +40,8 @@ pub struct Eye {
     pub pitch_rad: f32,
     /// Between the upper and the lower edge, rad.
     pub fov_y_rad: f32,
+    /// Pictures one above the other, each of which looks 90 degrees more to the right: 1, or 4 of a panorama.
+    pub pictures: u32,
 }
 
 /// A floor that is seen flatter than this is too far away to be clicked: metres down per metre ahead.
@@ -47,10 +50,13 @@ const FLATTEST: f32 = 0.05;
 impl Eye {
     /// The point on the floor at a place (0 to 1 from the left and from the top) of a picture of that size, m.
     fn floor_m(&self, size: [u32; 2], place: [f32; 2]) -> Option<[f32; 2]> {
+        let pictures = self.pictures.max(1) as f32;
+        let picture = (place[1] * pictures).floor().clamp(0.0, pictures - 1.0);
+        let (down_it, yaw_rad) = (place[1] * pictures - picture, self.yaw_rad - picture * FRAC_PI_2);
         let half = (self.fov_y_rad / 2.0).tan();
-        let aspect = size[0] as f32 / size[1].max(1) as f32;
-        let (right, up) = ((2.0 * place[0] - 1.0) * half * aspect, (1.0 - 2.0 * place[1]) * half);
-        let ((sin_yaw, cos_yaw), (sin_pitch, cos_pitch)) = (self.yaw_rad.sin_cos(), self.pitch_rad.sin_cos());
+        let aspect = size[0] as f32 * pictures / size[1].max(1) as f32;
+        let (right, up) = ((2.0 * place[0] - 1.0) * half * aspect, (1.0 - 2.0 * down_it) * half);
+        let ((sin_yaw, cos_yaw), (sin_pitch, cos_pitch)) = (yaw_rad.sin_cos(), self.pitch_rad.sin_cos());
         let (ahead, down) = (cos_pitch - up * sin_pitch, -(sin_pitch + up * cos_pitch));
         if down < FLATTEST {
             return None;
@@ -255,7 +261,8 @@ mod tests {
     fn the_floor_is_found_where_the_eye_sees_it() {
         let view = View::new(CameraId::Eyes(0));
         let quarter = std::f32::consts::FRAC_PI_4;
-        let eye = Eye { position_m: [1.0, 2.0, 1.0], yaw_rad: 2.0 * quarter, pitch_rad: -quarter, fov_y_rad: quarter };
+        let (position_m, yaw_rad) = ([1.0, 2.0, 1.0], 2.0 * quarter);
+        let eye = Eye { position_m, yaw_rad, pitch_rad: -quarter, fov_y_rad: quarter, pictures: 1 };
         view.show(Frame::default(), Some(Ids::new(1, [4, 3], &[1; 12]).seen_from(eye)));
         let [x, y] = view.floor_at(1, [0.5, 0.5]).unwrap();
         assert!((x - 1.0).abs() < 1e-5 && (y - 3.0).abs() < 1e-5, "a metre ahead, which is along y: {x} {y}");

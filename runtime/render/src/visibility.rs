@@ -76,7 +76,9 @@ impl Classes {
     pub fn set(&mut self, instances: &[Instance]) {
         self.instances.clear();
         self.instances.extend(instances.iter().map(|instance| (instance.id, instance.look.class())));
-        self.instances.sort_unstable_by_key(|(id, _)| *id);
+        // What flows into a thing bears its id: it is a part of it, and no thing of its own.
+        self.instances.sort_unstable_by_key(|(id, class)| (*id, *class == SemanticClass::Effect));
+        self.instances.dedup_by_key(|(id, _)| *id);
     }
 
     /// What an id of the id plane stands for.
@@ -179,6 +181,7 @@ fn run(id: u32, line: &[u32]) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use cohabit_cdf::{ClassId, Color, Fluid, RoomId, StateFlags};
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
@@ -221,6 +224,30 @@ mod tests {
         let ids: Vec<u32> = (1..=4096).map(|id| id * 4096 + 1).collect();
         let mut table = SeenTable::default();
         assert_eq!(table.look(&ids, 64, &Classes::default()).len(), 4096);
+    }
+
+    #[test]
+    fn what_is_filled_stays_what_it_is_while_something_flows_into_it() {
+        let of = |look| Instance {
+            id: 7,
+            look,
+            position_m: [0.0; 3],
+            rotation: [0.0, 0.0, 0.0, 1.0],
+            scale: [1.0; 3],
+            flags: StateFlags::default(),
+            fluid: Fluid::Water,
+            color: Color::Original,
+            opened: 0.0,
+            running: 0.0,
+            room: RoomId::BREAK_ROOM,
+            visible: true,
+        };
+        let (mug, stream) = (of(Look::Object(ClassId(3))), of(Look::Stream { height_m: 0.2 }));
+        let mut classes = Classes::default();
+        for instances in [[mug.clone(), stream.clone()], [stream, mug]] {
+            classes.set(&instances);
+            assert_eq!((classes.of(7), classes.most(0)), (SemanticClass::Object(ClassId(3)), 1));
+        }
     }
 
     #[test]

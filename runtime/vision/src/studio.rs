@@ -3,12 +3,16 @@
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use cohabit_bus::message::Plane;
+use cohabit_cdf::Layout;
 use cohabit_demonstrate::write_plane;
 use cohabit_engine::furnishings;
 use cohabit_render::{Camera, CpuRenderer, Instance, MeshLibrary, Planes, Renderer as _, Scene};
 use cohabit_world::World;
 
 use crate::{error::VisionError, look};
+
+/// The most scenes that are kept: each has some megabytes, and a world may have a thousand floor plans.
+const MOST_SCENES: usize = 16;
 
 /// The scenes of floor plans and the memory of one picture, kept from image to image.
 pub(crate) struct Studio {
@@ -37,8 +41,9 @@ impl Studio {
 
     /// Draws what a camera sees of a world.
     pub fn shoot(&mut self, world: &World, camera: &Camera) -> &Picture {
-        let Self { meshes, renderer, scenes, picture } = self;
         let layout = world.layout();
+        self.make_room(layout);
+        let Self { meshes, renderer, scenes, picture } = self;
         let scene = scenes.entry(layout.id.clone()).or_insert_with(|| Scene::new(Arc::clone(meshes), layout));
         let instances: Vec<Instance> = furnishings(world).collect();
         scene.set_instances(&instances);
@@ -54,6 +59,13 @@ impl Studio {
         };
         renderer.render(scene, camera, &mut planes);
         picture
+    }
+
+    /// Forgets all scenes where there is no room for that of another floor plan: which are known changes no picture.
+    fn make_room(&mut self, layout: &Layout) {
+        if self.scenes.len() >= MOST_SCENES && !self.scenes.contains_key(&layout.id) {
+            self.scenes.clear();
+        }
     }
 }
 
@@ -94,5 +106,28 @@ pub(crate) const fn file_of(plane: Plane) -> &'static str {
         Plane::Depth => "depth.png",
         Plane::Normals => "normals.png",
         Plane::Ids => "ids.png",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cohabit_cdf::{Catalog, Mission};
+    use cohabit_render::Lens;
+
+    use super::*;
+
+    #[test]
+    fn a_world_of_many_floor_plans_does_not_fill_the_memory() {
+        let catalog = Arc::new(Catalog::builtin());
+        let mut studio = Studio::new(Arc::new(MeshLibrary::build(&catalog).unwrap()));
+        let camera = Camera::fixed(Lens::new(16, 16, 60.0).unwrap(), [4.0, 10.0, 1.6], 0.0, 0.0);
+        let plan = Layout::builtin("OfficeLayout1").unwrap();
+        for number in 0..20 {
+            let layout = Layout { id: format!("Plan{number}"), ..plan.clone() };
+            let mission = Mission { layout: layout.id.clone(), start_room: plan.rooms[0].id, ..Mission::default() };
+            let world = World::new(Arc::clone(&catalog), Arc::new(layout), Arc::new(mission), 1).unwrap();
+            studio.shoot(&world, &camera);
+        }
+        assert!(studio.scenes.len() <= 16, "{}", studio.scenes.len());
     }
 }

@@ -30,9 +30,9 @@ impl Talk {
     }
 
     /// A frame was shown.
-    pub fn note_frame(&self, Shown { command, tick, sent_nanos }: Shown) -> Result<(), DialogError> {
+    pub fn note_frame(&self, Shown { tick, sent_nanos }: Shown) -> Result<(), DialogError> {
         let mut delivery = self.delivery();
-        let Some(moments) = delivery.latency.shown(command, sent_nanos) else { return Ok(()) };
+        let Some(moments) = delivery.latency.shown(tick, sent_nanos) else { return Ok(()) };
         self.hub.tell(&page::latency(&moments, Some(tick)));
         log_latency(&moments);
         delivery.publish_latency(&moments)

@@ -57,7 +57,7 @@ impl Talk {
         let mut game = |kind, text: &str| self.game(&mut delivery, envelope, kind, text);
         match event.kind() {
             Some(EventKind::Started) if is_new => {
-                if let Some(moments) = delivery.latency.moved(event.turn, event.command, envelope.sent_nanos) {
+                if let Some(moments) = delivery.latency.moved(event.turn, envelope.tick, envelope.sent_nanos) {
                     self.hub.tell(&page::latency(&moments, None));
                 }
             }
