@@ -308,6 +308,16 @@ pub enum LayoutError {
         /// The id.
         instance: String,
     },
+    /// A file has a room, a door or a viewpoint twice; the second would take the place of the first.
+    #[error("{file}: the {what} is there twice: {remedy}")]
+    Twice {
+        /// Which file.
+        file: String,
+        /// What, with its id.
+        what: String,
+        /// What would be right.
+        remedy: &'static str,
+    },
     /// An object stands on what stands on it.
     #[error("{file}: `{instance}` stands on itself")]
     OnItself {

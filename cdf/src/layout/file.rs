@@ -1,5 +1,7 @@
 //! Reads floor plans from TOML: whole plans, and variants that say what differs from a base.
 
+use std::collections::BTreeSet;
+
 use serde::Deserialize;
 
 use super::{
@@ -90,6 +92,7 @@ impl Layout {
     }
 
     fn apply(&mut self, name: &str, file: LayoutFile) -> Result<(), LayoutError> {
+        check_once(name, &file)?;
         self.wall_height_m = file.wall_height_m.unwrap_or(self.wall_height_m);
         replace_or_add(&mut self.rooms, file.room, |a, b| a.id == b.id);
         for finish in file.finish {
@@ -213,6 +216,23 @@ fn chain<'a>(id: &str, files: &[(&'a str, &str)]) -> Result<Vec<(&'a str, Layout
     Ok(chain)
 }
 
+/// What a file has takes the place of what its base has; of what it has twice, the first would be lost without a word.
+fn check_once(name: &str, file: &LayoutFile) -> Result<(), LayoutError> {
+    let rooms = file.room.iter();
+    let rooms = rooms.map(|room| (format!("room `{}`", room.id), "write all its rectangles into one `rects_m`"));
+    let doors = file.opening.iter().filter_map(|opening| opening.door.as_ref());
+    let doors = doors.map(|door| (format!("door `{door}`"), "give each door a number of its own"));
+    let views = file.viewpoint.iter();
+    let views = views.map(|view| (format!("viewpoint {} of {}", view.number, view.room), "give one another number"));
+    let mut seen = BTreeSet::new();
+    for (what, remedy) in rooms.chain(doors).chain(views) {
+        if !seen.insert(what.clone()) {
+            return Err(LayoutError::Twice { file: name.to_owned(), what, remedy });
+        }
+    }
+    Ok(())
+}
+
 /// Puts each new one in the place of the first that is the `same`, or at the end.
 fn replace_or_add<T>(list: &mut Vec<T>, new: Vec<T>, same: impl Fn(&T, &T) -> bool) {
     for item in new {
@@ -293,6 +313,14 @@ viewpoint = [{ room = "Hallway", number = 1, at_m = [3.0, 1.0], yaw_deg = -90.0 
                 "`Desk_01_1` stands on itself",
             ),
             ("base = \"Other\"", "lead back"),
+            (
+                "opening = [{ kind = \"door\", door = \"Door_01_2\", between = [\"Hallway\", \"Hallway\"], at_m = [1.0, 0.0], width_m = 1.0, wall_runs = \"x\" }, { kind = \"door\", door = \"Door_01_2\", between = [\"Hallway\", \"Hallway\"], at_m = [3.0, 0.0], width_m = 1.0, wall_runs = \"x\" }]",
+                "Other.toml: the door `Door_01_2` is there twice: give each door a number",
+            ),
+            (
+                "room = [{ id = \"Lab1\", rects_m = [[4.0, 0.0, 6.0, 2.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }, { id = \"Lab1\", rects_m = [[6.0, 0.0, 8.0, 4.0]], floor = { material = \"tile\", color = \"#ffffff\" }, wall = { material = \"plain\", color = \"#eeeeee\" }, circuit = 1 }]",
+                "Other.toml: the room `Lab1` is there twice: write all its rectangles into one `rects_m`",
+            ),
             ("bass = 1", "Other.toml"),
             ("base = \"Nowhere\"", "there are Hall, Other, Hall_mirror, Other_mirror"),
         ];

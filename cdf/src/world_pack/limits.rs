@@ -3,10 +3,10 @@
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use super::{PackError, PackFile};
+use super::{PackError, PackFile, rooms::is_color};
 use crate::{
     catalog::{Catalog, ObjectClass, files},
-    layout::Layout,
+    layout::{Finish, Layout, Room},
     model::{Model, Part, Shape, check_mesh},
     nearest::did_you_mean,
 };
@@ -125,6 +125,9 @@ fn check_object(file: &str, class: &ObjectClass, errors: &mut Vec<PackError>) {
         let remedy = format!("it is above 0 kg, and at most {HEAVIEST_KG} kg");
         fault("mass_kg", format!("{} is no mass", class.mass_kg), remedy);
     }
+    if let Some(tint) = class.tint.as_deref().filter(|tint| !is_color(tint)) {
+        fault("tint", format!("`{tint}` is no colour"), "write it as #rrggbb".to_owned());
+    }
     let surfaces = class.receptacle.iter().flat_map(|receptacle| &receptacle.surfaces);
     if !surfaces.flat_map(|surface| surface.anchors).all(|count| (1..=MOST_ANCHORS).contains(&count)) {
         let remedy = format!("from 1 to {MOST_ANCHORS} along each side");
@@ -143,9 +146,21 @@ pub(super) fn check_models(files: &[(String, String)]) -> Vec<PackError> {
             let remedy = format!("from 1 to {MOST_SHAPES}, repeated ones counted each");
             errors.push(PackError::at(file, &at, format!("{shapes} shapes"), &remedy));
         }
+        check_colors(file, &model, &mut errors);
         check_meshes(file, &model, &mut errors);
     }
     errors
+}
+
+/// Parts have colours, or those of what they are a part of: where one is none, nothing could be drawn.
+fn check_colors(file: &str, model: &Model, errors: &mut Vec<PackError>) {
+    for (number, part) in (1..).zip(&model.parts) {
+        if !matches!(part.color.as_str(), "tint" | "fluid") && !is_color(&part.color) {
+            let at = format!("model `{}`: part {number}: color", model.id);
+            let reason = format!("`{}` is no colour", part.color);
+            errors.push(PackError::at(file, &at, reason, "write it as #rrggbb, `tint` or `fluid`"));
+        }
+    }
 }
 
 /// Meshes have the points that their triangles name, and a model has as many triangles as can be drawn.
@@ -205,12 +220,25 @@ pub(super) fn check_plan(file: &str, plan: &Layout, catalog: &Catalog) -> Vec<Pa
         let reason = format!("{:?} is no scale", placement.scale);
         fault(&at, reason, &format!("above 0, and at most {LARGEST_SCALE}"));
     }
+    errors.extend(plan.rooms.iter().flat_map(|room| check_finishes(file, room)));
     // Ways are looked for in plans alone that are sound else: the floor is a grid.
     if errors.is_empty() {
         let without = plan.rooms_without_a_way(catalog);
         errors.extend(without.iter().map(|one| PackError::at(file, "room", one.to_string(), &one.remedy())));
     }
     errors
+}
+
+/// Floors and walls have colours: what is none would be drawn grey without a word.
+fn check_finishes(file: &str, room: &Room) -> Vec<PackError> {
+    let all = [("floor", Some(&room.floor)), ("wall", Some(&room.wall)), ("wainscot", room.wainscot.as_ref())];
+    let said = all.into_iter().filter_map(|(part, finish)| Some((part, finish?)));
+    let wrong = said.filter(|(_, finish)| !is_color(&finish.color));
+    let error = |(part, finish): (&str, &Finish)| {
+        let at = format!("room `{}`: {part}.color", room.id.id());
+        PackError::at(file, &at, format!("`{}` is no colour", finish.color), "write it as #rrggbb")
+    };
+    wrong.map(error).collect()
 }
 
 /// What is said in missions is of missions that there are.

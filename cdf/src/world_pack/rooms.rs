@@ -30,7 +30,8 @@ fn is_said(words: &str) -> bool {
     fits && !words.trim().is_empty() && words.len() <= 64
 }
 
-fn is_color(text: &str) -> bool {
+/// Whether it is written as `#rrggbb`.
+pub(super) fn is_color(text: &str) -> bool {
     let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
     digits.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_hexdigit()))
 }

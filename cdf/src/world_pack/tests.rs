@@ -150,6 +150,22 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ),
         (
             "objects/more.toml",
+            object("mass_kg = 1\nsize_m = [1, 1, 1]\ntint = \"red\""),
+            &["first/objects/more.toml: object `Box_99`: tint: `red` is no colour: write it as #rrggbb"],
+        ),
+        (
+            "models/more.toml",
+            "[[model]]\nid = \"M\"\npart = [{ shape = \"sphere\", radii = [1, 1, 1], color = \"red\" }]".to_owned(),
+            &["first/models/more.toml: model `M`: part 1: color: `red` is no colour: write it as #rrggbb, `tint` or"],
+        ),
+        (
+            "layouts/More.toml",
+            "base = \"Workshop\"\nfinish = [{ room = \"Workshop\", floor = { material = \"wood\", color = \"brown\" } }]"
+                .to_owned(),
+            &["first/layouts/More.toml: room `Workshop`: floor.color: `brown` is no colour: write it as #rrggbb"],
+        ),
+        (
+            "objects/more.toml",
             object("mass_kg = 1\nsize_m = [1, 1, 1]").replace("Box_99", "Bowl_01"),
             &["more.toml: `Bowl_01`", "things.toml"],
         ),
@@ -170,6 +186,12 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
             &["first/table/more.toml: ", "the built-in devices.toml"],
         ),
         ("table/more.toml", "[[device]]\nclass = [\"Nothing_01\"]\n".to_owned(), &["`Nothing_01` is no class"]),
+        (
+            "table/more.toml",
+            "[[rule]]\nname = \"oil\"\naction = \"clean\"\nneeds = [[\"it exists\", \"ActionExecutonError\", \"no\"]]\n"
+                .to_owned(),
+            &["first/table/more.toml: `ActionExecutonError` is no status (did you mean `ActionExecutionError`?)"],
+        ),
         ("table/more.toml", "[times]\nwork_s = 1\nmoment_s = 2\n".to_owned(), &["first/table/more.toml: times: "]),
         (
             "table/more.toml",

@@ -7,9 +7,12 @@ use serde::Deserialize;
 use super::{
     ActionKind, Device, Need, Rule, Site, TableError, Work,
     change::{Change, Effect},
-    condition::{Condition, Kinds},
+    condition::{Condition, Kinds, read_word},
 };
-use crate::action::Status;
+use crate::{
+    action::Status,
+    nearest::{aside, nearest},
+};
 
 /// One file: any part of the table.
 #[derive(Default, Deserialize)]
@@ -47,7 +50,7 @@ pub(super) struct Times {
 #[serde(untagged)]
 enum RawNeed {
     Shared(String),
-    One(OneOrMany, Status, String),
+    One(OneOrMany, String, String),
 }
 
 #[derive(Deserialize)]
@@ -246,11 +249,22 @@ impl Reader<'_> {
                         OneOrMany::One(text) => std::slice::from_ref(text),
                         OneOrMany::Many(texts) => texts,
                     };
-                    needs.push(Need { any: self.conditions(texts)?, status: *status, words: words.clone() });
+                    let (any, status) = (self.conditions(texts)?, self.status(status)?);
+                    needs.push(Need { any, status, words: words.clone() });
                 }
             }
         }
         Ok(needs)
+    }
+
+    /// A status by its name. One that is misspelt is told by itself: TOML would say no more than that nothing fits.
+    fn status(&self, name: &str) -> Result<Status, TableError> {
+        let unknown = || {
+            let names: Vec<String> = Status::ALL.iter().map(|status| format!("{status:?}")).collect();
+            let near = nearest(name, names.iter().map(String::as_str)).map(str::to_owned);
+            self.text(format!("`{name}` is no status{}", aside(&near)))
+        };
+        read_word(name).ok_or_else(unknown)
     }
 
     fn effects(&self, raw: &[RawEffect]) -> Result<Vec<Effect>, TableError> {
