@@ -73,6 +73,10 @@ fn a_port_in_use_is_named() {
     let port = taken.local_addr().unwrap().port().to_string();
     // That is the machine's matter: the same command may succeed later.
     check_code(4, &["--port", &port], &[&port, "--port"]);
+    let log = std::env::temp_dir().join(format!("cohabit-refused-{}.mcap", std::process::id()));
+    let output = run(COHABIT, &["play", "--port", &port, "--log", log.to_str().unwrap()]).unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(!said.contains("Playing") && !log.exists(), "nothing is started: {said}");
 }
 
 #[test]
@@ -82,6 +86,17 @@ fn a_camera_that_cannot_be_is_named() {
     check(&["--camera", "a=egocentric,size=5000"], &["5000x5000", "16 to 4096"]);
     check(&["--camera", "a=egocentric,body=4", "--port", "0"], &["body 4", "bodies 0 to 0", "--body"]);
     check(&["--camera", "a=egocentric", "--camera", "a=panorama"], &["two cameras are called `a`"]);
+}
+
+#[test]
+fn the_help_has_all_options_that_every_camera_has() {
+    for command in ["play", "sim"] {
+        let output = run(COHABIT, &[command, "--help"]).unwrap();
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        for option in ["size=", "rate=", "planes=", "smooth="] {
+            assert!(text.contains(option), "{command}: no `{option}` in {text}");
+        }
+    }
 }
 
 #[test]
@@ -95,9 +110,29 @@ fn an_agent_that_cannot_be_is_named() {
 }
 
 #[test]
+fn a_name_for_nobody_is_named() {
+    check(&["--name", "1=Rosie"], &["`--name 1=Rosie`", "bodies 0 to 0", "--body"]);
+}
+
+#[test]
 fn a_file_that_is_no_log_is_not_replayed() {
     let path = file("no-log.mcap", "hello");
     let output = run(COHABIT, &["replay", path.to_str().unwrap()]).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("no-log.mcap"));
+}
+
+#[test]
+fn what_a_replay_would_pass_over_is_named() {
+    for (arguments, parts) in [
+        (&["--camera", "eyes/0"][..], &["--frames", "--video"][..]),
+        (&["--modality", "depth"], &["--frames", "--video"]),
+        (&["--size", "64x48"], &["--frames", "--video"]),
+        (&["--branch", "0:20", "--renderer", "cpu"], &["--branch", "--renderer"]),
+    ] {
+        let output = run(COHABIT, &[&["replay", "no.mcap"], arguments].concat()).unwrap();
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(parts.iter().all(|part| text.contains(part)) && !text.contains("no such file"), "{text}");
+    }
 }

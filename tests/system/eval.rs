@@ -107,6 +107,14 @@ fn the_expert_solves_missions_from_their_goals_alone_and_its_logs_replay() {
 }
 
 #[test]
+fn a_report_for_which_there_is_no_room_is_said() {
+    let arguments = ["eval", &builtin(), "--agent", "expert", "--only", "cold_soda", "--report", "/dev/full"];
+    let output = run(COHABIT, &arguments).unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(4) && text.contains("/dev/full"), "{output:?}");
+}
+
+#[test]
 fn bad_sources_are_refused_with_their_place() {
     let folder = folder("bad");
     let bad = folder.join("missions.jsonl");

@@ -16,6 +16,8 @@ fn agents_and_recorder_keep_up() {
     page.wait("a thousand ticks", |page, _| many(page)).unwrap();
     thread::sleep(Duration::from_millis(500));
     let ended = play.end().unwrap();
+    let log = cohabit_record::Log::open(&ended.log).unwrap();
+    assert_eq!(log.session.settings["timing"], "lock-step with 2 agents", "as many as it has waited for");
     let replayed = run(COHABIT, &["replay", ended.log.to_str().unwrap()]).unwrap();
     let said = String::from_utf8_lossy(&replayed.stdout).into_owned();
     assert!(replayed.status.success() && said.contains("no tick differs"), "{said}");

@@ -1,6 +1,11 @@
 //! Sessions side by side, ended, and bereft of a process.
 
-use cohabit_tests::{Page, Play, run};
+use std::{
+    io::{BufRead as _, BufReader},
+    process::{Command, Stdio},
+};
+
+use cohabit_tests::{Page, Play, Scratch, run};
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::COHABIT;
@@ -18,6 +23,29 @@ fn two_sessions_run_side_by_side_and_leave_nothing() {
     let mut page = Page::open(two.authority()).unwrap();
     page.do_and_wait("turn right").unwrap();
     two.end().unwrap();
+}
+
+#[test]
+fn a_session_ends_as_ever_though_nobody_reads_any_more_what_it_says() {
+    let scratch = Scratch::new("unread");
+    let (session, log) = (format!("unread-{}", std::process::id()), scratch.path("session.mcap"));
+    let mut play = Command::new(COHABIT)
+        .args(["play", "--port", "0", "--session", &session, "--log", &log])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(play.stdout.take().unwrap()).lines().map_while(Result::ok);
+    assert!(said.any(|line| line.starts_with("Open http")));
+    // As of `cohabit play | tee file`, of which Ctrl-C ends `tee` first.
+    drop(said);
+    kill_process(Pid::from_raw(i32::try_from(play.id()).unwrap()).unwrap(), Signal::INT).unwrap();
+    let output = play.wait_with_output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let left = std::fs::read_dir("/dev/shm").unwrap().flatten();
+    assert_eq!(left.filter(|entry| entry.file_name().to_string_lossy().contains(&session)).count(), 0);
+    let replayed = run(COHABIT, &["replay", &log]).unwrap();
+    assert!(replayed.status.success(), "{replayed:?}");
 }
 
 #[test]

@@ -1,8 +1,25 @@
 //! `cohabit time` changes how the time of a running session goes by.
 
+use std::time::{Duration, Instant};
+
 use cohabit_tests::{Page, Play, run};
 
 use crate::COHABIT;
+
+#[test]
+fn a_look_at_a_session_takes_as_long_as_is_asked_for() {
+    let play = Play::start(COHABIT, &["make_cereal"]).unwrap();
+    let top = |once: &str| {
+        let began = Instant::now();
+        let output = run(COHABIT, &["top", "--session", &play.session, "--json", "--once", once]).unwrap();
+        (output, began.elapsed())
+    };
+    let (output, taken) = top("2.5");
+    assert!(output.status.success() && taken >= Duration::from_millis(2500), "{taken:?}: {output:?}");
+    let (output, _) = top("nan");
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    play.end().unwrap();
+}
 
 #[test]
 fn a_session_stands_still_steps_goes_faster_and_goes_on() {

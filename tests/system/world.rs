@@ -111,6 +111,20 @@ fn an_object_is_imported_from_a_gltf_file_once() {
 }
 
 #[test]
+fn nothing_is_imported_into_a_pack_that_comes_with_the_program() {
+    let scratch = Scratch::new("import-builtin");
+    let file = scratch.write("pyramid.gltf", PYRAMID);
+    let mut command = std::process::Command::new(COHABIT);
+    command.args(["import-model", file.as_str(), "--id", "Pyramid_Lab", "--into", "homes"]);
+    let output = command.current_dir(scratch.path("")).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("homes: there is no such folder: write a pack by `cohabit new world"), "{text}");
+    // A folder of that name would stand in the way of the pack for ever.
+    assert!(!Path::new(&scratch.path("homes")).exists(), "{text}");
+}
+
+#[test]
 fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
     let scratch = Scratch::new("no-door");
     let into = scratch.path("packs");
@@ -136,6 +150,19 @@ fn a_room_without_a_door_is_refused_with_its_name_and_what_to_write() {
     std::fs::write(&plan, text).unwrap();
     let (text, code) = told(&["check", "--world", &pack]);
     assert!(code == Some(2) && text.contains("Hallway has no viewpoint 7; each room has viewpoints 1 to 8"), "{text}");
+}
+
+#[test]
+fn a_pack_with_a_model_that_cannot_be_drawn_is_not_playable() {
+    let scratch = Scratch::new("undrawn");
+    let (text, code) = told(&["new", "world", "odd", "--into", &scratch.path("")]);
+    assert_eq!(code, Some(0), "{text}");
+    let pack = scratch.path("odd");
+    let model = "[[model]]\nid = \"Flat_01\"\npart = [{ shape = \"sphere\", radii = [1.0, 0.0, 1.0] }]\n";
+    std::fs::write(format!("{pack}/models/flat.toml"), model).unwrap();
+    let (text, code) = told(&["check", "--world", &pack]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("odd: not playable") && text.contains("model `Flat_01`, part 1: `radii` is 0"), "{text}");
 }
 
 #[test]
@@ -249,10 +276,11 @@ fn what_is_no_world_is_refused() {
     let scratch = Scratch::new("no-world");
     let into = scratch.path("packs");
     std::fs::create_dir_all(&into).unwrap();
-    for name in ["../x", "X", ""] {
+    for name in ["../x", "X", "", "homes"] {
         let (text, code) = told(&["new", "world", name, "--into", &into]);
         assert_eq!(code, Some(2), "{text}");
     }
+    assert!(!Path::new(&format!("{into}/homes")).exists());
     let (text, code) = told(&["check", "--world", &into]);
     assert_eq!(code, Some(2), "{text}");
     assert!(text.contains("there is no `world.toml`"), "{text}");

@@ -13,6 +13,7 @@ use cohabit_cdf::{
     layout::LayoutFault,
     mission::{self, Checked, Pointer, Problem, Severity, Source},
 };
+use cohabit_render::MeshLibrary;
 use cohabit_world::{BuildError, World};
 use serde_json::{Value, json};
 
@@ -166,7 +167,7 @@ struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// One for each floor plan and each mission of the world packs.
+    /// One for each floor plan and each mission of the world packs, and one for models that cannot be drawn.
     fn of_packs(&mut self) -> Vec<Verdict> {
         let (world, mut verdicts) = (self.world, Vec::new());
         for pack in world.packs() {
@@ -175,7 +176,15 @@ impl Checker<'_> {
                 verdicts.extend(mission::sources(file, text).iter().map(|source| self.verdict(source)));
             }
         }
+        verdicts.extend(self.undrawn());
         verdicts
+    }
+
+    /// What of the models a session could not draw, and would end at; nothing, if it draws all of them.
+    fn undrawn(&self) -> Option<Verdict> {
+        let error = MeshLibrary::build(&self.catalog).err()?;
+        let packs: Vec<&str> = self.world.packs().iter().map(|pack| pack.id().name.as_str()).collect();
+        Some(Verdict::unread(&packs.join(", "), &error.to_string()))
     }
 
     /// Whether people can live and robots work in a floor plan.

@@ -18,7 +18,7 @@ use cohabit_tables::{Align, columns};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
-    failure::bad_input,
+    failure::{bad_input, environment},
     terminal::{shown, shown_lines},
     world::WorldPacks,
 };
@@ -149,8 +149,10 @@ impl Eval {
         let out = self.report.as_ref().map(|path| create(path)).transpose()?;
         let report = self.play(&tasks)?;
         print(&report);
-        if let Some(out) = out {
-            serde_json::to_writer_pretty(out, &report)?;
+        if let (Some(path), Some(mut out)) = (&self.report, out) {
+            let written = serde_json::to_writer_pretty(&mut out, &report).map_err(io::Error::from);
+            // A buffer that is dropped says nothing of a disk that is full.
+            written.and_then(|()| out.flush()).map_err(|error| failed(path, &error))?;
         }
         Ok(())
     }
@@ -183,8 +185,8 @@ impl Eval {
         let tasks = generate(self.made_up.missions, self.seed, &language).map_err(bad_input)?;
         if let Some(path) = &self.made_up.save {
             let mut out = create(path)?;
-            tasks.iter().try_for_each(|task| writeln!(out, "{}", task.as_line()))?;
-            out.flush()?;
+            let written = tasks.iter().try_for_each(|task| writeln!(out, "{}", task.as_line()));
+            written.and_then(|()| out.flush()).map_err(|error| failed(path, &error))?;
         }
         Ok(tasks)
     }
@@ -257,6 +259,11 @@ impl Eval {
 fn create(path: &Path) -> anyhow::Result<io::BufWriter<std::fs::File>> {
     let file = std::fs::File::create(path).map_err(|error| bad_input(format!("{}: {error}", path.display())))?;
     Ok(io::BufWriter::new(file))
+}
+
+/// A file that could not be written.
+fn failed(path: &Path, error: &io::Error) -> anyhow::Error {
+    environment(format!("{}: {error}", path.display()))
 }
 
 /// Unsolved missions that are printed at most; the report has all.

@@ -129,8 +129,10 @@ fn write_png(path: &Path, rgba: &[u8], [width, height]: [u32; 2]) -> anyhow::Res
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header()?.write_image_data(rgba)?;
-    Ok(())
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgba)?;
+    // One that is dropped instead says nothing of a disk that is full.
+    Ok(writer.finish()?)
 }
 
 /// A room from its first viewpoint, as a person would see it.

@@ -103,6 +103,13 @@ struct Written {
 impl ImportModel {
     /// Imports it, writes it, and checks the pack.
     pub fn run(&self) -> anyhow::Result<()> {
+        // The name of a pack that comes with the program is taken for its files, into which nothing can be written.
+        if !self.into.is_dir() {
+            return Err(bad_input(format!(
+                "{}: there is no such folder: write a pack by `cohabit new world NAME`, and import into that",
+                self.into.display()
+            )));
+        }
         let world = self.packs.read()?;
         let files = world_folder_files(&self.into).map_err(bad_input)?;
         let bytes = read_document(&self.file).map_err(bad_input)?;

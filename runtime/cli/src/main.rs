@@ -1,5 +1,23 @@
 //! `cohabit`: people and robots together in a simulated office.
 
+// In all modules of this program these take the place of those of the standard library, which end the program where nobody reads
+// any more: as in `cohabit play | tee file`, whose Ctrl-C ends `tee` before the session has ended.
+
+/// Prints a line.
+macro_rules! println {
+    ($($text:tt)*) => { $crate::terminal::say(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+/// Prints a text.
+macro_rules! print {
+    ($($text:tt)*) => { $crate::terminal::say(format_args!($($text)*)) };
+}
+
+/// Prints a line on standard error.
+macro_rules! eprintln {
+    ($($text:tt)*) => { $crate::terminal::warn(format_args!("{}\n", format_args!($($text)*))) };
+}
+
 mod annotate;
 mod arena;
 mod benchmark;

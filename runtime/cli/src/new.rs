@@ -7,7 +7,7 @@ use std::{
 };
 
 use clap::Subcommand;
-use cohabit_cdf::world_pack::{self, NAME_RULE, is_name};
+use cohabit_cdf::world_pack::{self, NAME_RULE, builtin_names, is_name};
 
 use crate::{
     failure::{bad_input, environment},
@@ -50,6 +50,11 @@ impl NewWorld {
     fn run(&self) -> anyhow::Result<()> {
         if !is_name(&self.name) {
             return Err(bad_input(format!("`{}` is no name of a world pack: {NAME_RULE}", self.name)));
+        }
+        // A folder of that name would be taken for the pack wherever `--world` names that.
+        if builtin_names().any(|other| other == self.name) {
+            let reason = "is the name of a world pack that comes with the program: take another name";
+            return Err(bad_input(format!("`{}` {reason}", self.name)));
         }
         let folder = self.into.join(&self.name);
         fs::create_dir(&folder).map_err(|error| match error.kind() {

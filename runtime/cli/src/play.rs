@@ -2,6 +2,7 @@
 
 use std::{
     ffi::OsString,
+    net::SocketAddr,
     path::PathBuf,
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
@@ -21,7 +22,7 @@ use crate::{
     mission_file::MissionFile,
     peers::{self, Listening, NAME_OF, Noted, Timing, Watching},
     rendering::Rendering,
-    sessions, stop,
+    sessions, site, stop,
     supervisor::{Role, Supervisor},
     terminal::shown,
     world::WorldPacks,
@@ -53,7 +54,8 @@ pub struct Play {
     minds: Vec<MindRequest>,
     /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
     /// `third-person`, `fixed` (x=, y=, z= in metres, yaw=, pitch= in degrees) or `top-down` (span= in metres); all have
-    /// size=WxH, rate=, planes=color+depth+normals+ids, and most body= and fov=; as often as needed
+    /// size=WxH, rate=, planes=color+depth+normals+ids, smooth=yes or no (smooth edges and outlines, for people; in lock-step
+    /// only those with smooth=no belong to the turns of agents), and most body= and fov=; as often as needed
     #[arg(long = "camera", value_name = "NAME=KIND[,OPTION=VALUE]")]
     cameras: Vec<CameraPlan>,
     /// Go on from a point of a recorded session instead, LOG@TIME: its mission, its bodies, its world
@@ -98,13 +100,16 @@ impl Play {
         let world = self.packs.read()?;
         let (plan, before) = self.plan(seed, &world)?;
         MindRequest::check(&self.minds, &plan)?;
+        self.check_names(&plan)?;
         let robots: Vec<u32> = self.minds.iter().filter_map(MindRequest::spoken_to).collect();
         self.check_frames(&plan)?;
         self.rendering.check()?;
         self.watching.check()?;
         let questionnaires = self.listening.questionnaires()?;
         let page_texts = self.listening.language.texts()?;
-        let Listening { tls, listen, .. } = &self.listening;
+        let Listening { tls, listen, port, .. } = &self.listening;
+        // Where the port is another session's, that is said before anything is started, and no log is left.
+        drop(site::listen("the page", SocketAddr::new(*listen, *port))?);
         if let Some(notice) = tls.notice(*listen, tls.identity(*listen)?.as_ref()) {
             println!("{notice}");
         }
@@ -173,6 +178,19 @@ impl Play {
         Ok((plan.with_cameras(cameras).map_err(bad_input)?, before))
     }
 
+    /// Says which of the names are those of bodies that there are not.
+    fn check_names(&self, plan: &SessionPlan) -> anyhow::Result<()> {
+        let bodies = bodies(plan);
+        match self.listening.names.iter().find(|name| name.body as usize >= bodies) {
+            None => Ok(()),
+            Some(name) => Err(bad_input(format!(
+                "`--name {name}`: there is no body {}: the session has bodies 0 to {}; `--body robot` adds one",
+                name.body,
+                bodies - 1
+            ))),
+        }
+    }
+
     /// Says which of the cameras to be recorded are none.
     fn check_frames(&self, plan: &SessionPlan) -> anyhow::Result<()> {
         let known = cameras(plan);
@@ -221,7 +239,7 @@ impl Play {
             ("knows", knows.to_string()),
             ("renderer", self.rendering.to_string()),
             ("robots", robots),
-            ("timing", self.timing.to_string()),
+            ("timing", self.timing.with_agents(self.minds.len()).to_string()),
             ("understanding", understanding.to_string()),
         ];
         let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
@@ -263,9 +281,14 @@ impl Play {
     }
 }
 
+/// How many bodies a session has.
+fn bodies(plan: &SessionPlan) -> usize {
+    plan.mission.robots.len().max(1) + plan.bodies.len()
+}
+
 /// All cameras of a session.
 fn cameras(plan: &SessionPlan) -> Vec<CameraPlan> {
-    plan.all_cameras(plan.mission.robots.len().max(1) + plan.bodies.len())
+    plan.all_cameras(bodies(plan))
 }
 
 fn clock_seed() -> u64 {

@@ -44,7 +44,7 @@ pub struct Replay {
     #[command(flatten)]
     rendering: Rendering,
     /// Go on live from this time of the session: starts a session as `play` does, whose log says where it went on from
-    #[arg(long, value_name = "TIME", conflicts_with_all = ["at", "until", "frames", "video", "page"])]
+    #[arg(long, value_name = "TIME", conflicts_with_all = ["at", "until", "frames", "video", "page", "renderer", "threads"])]
     branch: Option<SessionTime>,
     /// Options of `play` for `--branch`, such as `-- --port 0 --participant P07`
     #[arg(last = true, requires = "branch", value_name = "OPTIONS OF PLAY")]
@@ -77,6 +77,7 @@ impl Replay {
         let mut replayer = Replayer::new(&log, Arc::clone(self.packs.read()?.catalog())).map_err(bad_input)?;
         tell_what_changed(&log.session, &replayer);
         if let Some(at) = self.at {
+            self.check_order(at)?;
             self.go_to(at, &mut replayer)?;
         }
         if self.page.page {
@@ -87,6 +88,13 @@ impl Replay {
             film.see(&replayer)?;
         }
         self.replay(&mut replayer, film)
+    }
+
+    fn check_order(&self, at: SessionTime) -> anyhow::Result<()> {
+        match self.until.filter(|until| *until < at) {
+            Some(until) => Err(bad_input(format!("`--until {until}`: that is before `--at {at}`"))),
+            None => Ok(()),
+        }
     }
 
     fn go_to(&self, at: SessionTime, replayer: &mut Replayer<'_>) -> anyhow::Result<()> {

@@ -19,6 +19,24 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// What `println!` and `print!` of this program do.
+pub fn say(text: fmt::Arguments<'_>) {
+    tell(&mut io::stdout().lock(), text);
+}
+
+/// What its `eprintln!` does.
+pub fn warn(text: fmt::Arguments<'_>) {
+    tell(&mut io::stderr().lock(), text);
+}
+
+/// Writes a text, if somebody still reads; a disk that is full is as bad as ever.
+fn tell(out: &mut impl io::Write, text: fmt::Arguments<'_>) {
+    match io::Write::write_fmt(out, text) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => panic!("print to the terminal: {error}"),
+        _ => {}
+    }
+}
+
 /// `text` on one line: characters that a terminal obeys or hides are written as escapes.
 pub fn shown<T: Display>(text: T) -> Shown<T> {
     Shown { text, form: Form::Line }
@@ -86,6 +104,14 @@ fn is_obeyed(character: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_ends_because_nobody_reads_what_is_said() {
+        let (reader, mut writer) = io::pipe().expect("a pipe");
+        tell(&mut writer, format_args!("read\n"));
+        drop(reader);
+        tell(&mut writer, format_args!("not read\n"));
+    }
 
     #[test]
     fn nothing_in_a_text_controls_the_terminal() {

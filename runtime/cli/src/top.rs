@@ -31,8 +31,16 @@ pub struct Top {
     #[arg(long)]
     json: bool,
     /// Print once, after so many seconds, and end
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     once: Option<f32>,
+}
+
+/// The longest that is waited for one look, s.
+const LONGEST_S: f32 = 3600.0;
+
+fn seconds(text: &str) -> Result<f32, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.0..=LONGEST_S).contains(seconds));
+    seconds.ok_or_else(|| format!("seconds, from 0 to {LONGEST_S}, such as 2"))
 }
 
 /// How often the screen is drawn anew.
@@ -51,9 +59,8 @@ impl Top {
         let bus = Shm::join(&session).map_err(joining)?;
         let mut watch = Watch::new(&bus)?;
         let live = io::stdout().is_terminal() && !self.json && self.once.is_none();
-        let lasting = if self.json { Some(1.0) } else { self.once };
-        if let Some(seconds) = lasting.or((!live).then_some(1.0)) {
-            watch.look_for(Duration::from_secs_f32(seconds.clamp(0.0, 3600.0)), &stop)?;
+        if let Some(seconds) = self.once.or((!live).then_some(1.0)) {
+            watch.look_for(Duration::from_secs_f32(seconds), &stop)?;
             let sheet = watch.sheet(session.name());
             return print(&if self.json { format!("{}\n", sheet.json()) } else { sheet.to_string() });
         }

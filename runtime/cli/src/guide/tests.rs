@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 use cohabit_cdf::mission::goal_kinds;
 use cohabit_tests::{Block, Call, blocks, commands};
 use pulldown_cmark::{Event, HeadingLevel, Tag};
@@ -42,6 +42,18 @@ fn links(text: &str) -> Vec<String> {
 /// What the links to the headings of a text have behind the `#`.
 fn anchors(text: &str) -> Vec<String> {
     headings(text).iter().map(Heading::anchor).collect()
+}
+
+#[test]
+fn the_page_for_labs_names_the_port_of_all_that_listens() {
+    let table = page("deploy").unwrap().text;
+    for command in Cohabit::command().get_subcommands() {
+        let port = command.get_arguments().find(|argument| argument.get_id() == "port");
+        for usual in port.into_iter().flat_map(clap::Arg::get_default_values) {
+            let usual = usual.to_string_lossy().into_owned();
+            assert!(table.contains(&format!("| {usual}")), "{} listens at {usual}", command.get_name());
+        }
+    }
 }
 
 #[test]

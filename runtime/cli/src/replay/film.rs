@@ -12,7 +12,7 @@ use cohabit_bus::{
     message::{FrameView, Plane, Thing},
 };
 use cohabit_engine::{CameraPlan, Replayer, Stills, replay::TICK_S};
-use cohabit_render::{Lens, MeshLibrary};
+use cohabit_render::{Lens, MeshLibrary, room_surface_of_id};
 
 use super::{
     picture::{self, Modality, Picture},
@@ -20,23 +20,31 @@ use super::{
 };
 use crate::{failure::bad_input, rendering::Rendering};
 
-/// What is filmed, and where it goes.
+/// Where pictures go.
 #[derive(clap::Args)]
-pub struct FilmOptions {
+#[group(id = "pictures", multiple = true)]
+struct Places {
     /// Render the session anew, a PNG file a picture, into this folder
     #[arg(long, value_name = "FOLDER")]
     frames: Option<PathBuf>,
     /// Render the session anew into this video file (YUV4MPEG2, which ffmpeg and most players read)
     #[arg(long, value_name = "FILE.y4m")]
     video: Option<PathBuf>,
+}
+
+/// What is filmed, and where it goes.
+#[derive(clap::Args)]
+pub struct FilmOptions {
+    #[command(flatten)]
+    places: Places,
     /// The camera of `--frames` and `--video`: one that the session had, such as eyes/0, or a new one, as of `play`
-    #[arg(long, default_value = "spectator/0", value_name = "NAME|NAME=KIND[,OPTION=VALUE]")]
+    #[arg(long, default_value = "spectator/0", value_name = "NAME|NAME=KIND[,OPTION=VALUE]", requires = "pictures")]
     camera: String,
     /// The size of its pictures, if not its own: pixels across and down
-    #[arg(long, value_name = "WxH", value_parser = read_size)]
+    #[arg(long, value_name = "WxH", value_parser = read_size, requires = "pictures")]
     size: Option<[u32; 2]>,
     /// What of it is shown; of a video the first
-    #[arg(long = "modality", value_enum, value_delimiter = ',', default_value = "color")]
+    #[arg(long = "modality", value_enum, value_delimiter = ',', default_value = "color", requires = "pictures")]
     modalities: Vec<Modality>,
     /// Pictures a second of the session
     #[arg(long, default_value_t = 10.0, value_parser = read_rate)]
@@ -77,14 +85,15 @@ impl FilmOptions {
 
     /// The film of what `replayer` goes through, if one is wanted.
     pub fn begin(&self, replayer: &Replayer<'_>, rendering: Rendering) -> anyhow::Result<Option<Film>> {
-        if self.frames.is_none() && self.video.is_none() {
+        let Places { frames: folder, video } = &self.places;
+        if folder.is_none() && video.is_none() {
             return Ok(None);
         }
         let camera = self.camera(replayer)?;
-        if let Some(folder) = &self.frames {
+        if let Some(folder) = folder {
             std::fs::create_dir_all(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
         }
-        let video = match &self.video {
+        let video = match video {
             Some(path) => {
                 let created = Video::create(path, self.rate);
                 Some((path.clone(), created.map_err(|error| bad_input(format!("{}: {error}", path.display())))?))
@@ -102,7 +111,7 @@ impl FilmOptions {
             camera,
             frames,
             modalities: self.modalities.clone(),
-            folder: self.frames.clone(),
+            folder: folder.clone(),
             video,
             every: 1.0 / (f64::from(self.rate) * TICK_S),
             next_tick,
@@ -207,7 +216,8 @@ fn name(id: u32, replayer: &Replayer<'_>) -> String {
         Thing::Body(id) => format!("body {}", id.0),
         Thing::Surface(room) => {
             let catalog = replayer.world().catalog();
-            catalog.room_at(room).map_or_else(String::new, |room| format!("surfaces of {}", room.name_in(catalog)))
+            let surface = room_surface_of_id(id).map_or("surface", |(_, surface)| surface.class().name(catalog));
+            catalog.room_at(room).map_or_else(String::new, |room| format!("{surface} of {}", room.name_in(catalog)))
         }
         Thing::Nothing => "nothing".to_owned(),
     }

@@ -12,7 +12,8 @@ const FARTHEST_M: f32 = 20.0;
 pub enum Modality {
     /// What a camera sees
     Color,
-    /// How far away things are: millimetres in 16 bits, 0 is nothing; in a video, the nearer the brighter
+    /// How far away things are along the camera's axis: millimetres in 16 bits, 65535 is that far or farther, 0 is nothing; in
+    /// a video, the nearer the brighter
     Depth,
     /// Which way surfaces look in the world: x, y and z as red, green and blue
     Normals,
@@ -67,8 +68,13 @@ impl Picture {
 
 /// Writes the distances of a frame as a PNG file.
 pub fn write_depth(path: &Path, frame: &FrameView<'_>) -> anyhow::Result<()> {
+    // Where nothing is seen, a frame has the distance up to which things are drawn.
     let millimetres = frame.depth_m().unwrap_or_default().iter().map(|depth_m| {
-        if depth_m.is_finite() { (depth_m * 1e3).round().clamp(0.0, f32::from(u16::MAX)) as u16 } else { 0 }
+        if *depth_m < cohabit_render::FAR_M {
+            (depth_m * 1e3).round().clamp(0.0, f32::from(u16::MAX)) as u16
+        } else {
+            0
+        }
     });
     let bytes: Vec<u8> = millimetres.flat_map(u16::to_be_bytes).collect();
     write_png(path, &bytes, size(frame), png::ColorType::Grayscale, png::BitDepth::Sixteen)
@@ -88,8 +94,10 @@ fn write_png(
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
-    encoder.write_header()?.write_image_data(bytes)?;
-    Ok(())
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    // One that is dropped instead says nothing of a disk that is full.
+    Ok(writer.finish()?)
 }
 
 fn brightness(depth_m: f32) -> u8 {
@@ -97,15 +105,9 @@ fn brightness(depth_m: f32) -> u8 {
     (near * near * 255.0).round() as u8
 }
 
-/// A colour of its own for each id below 2^24, and for each kind of surface; nothing is black.
+/// A colour of its own for each thing and for each surface of a room, as in data sets; nothing is black.
 pub fn color_of(id: u32) -> [u8; 3] {
-    // Surfaces are numbered by 256 from 2^24 on: fewer than 2^20 objects leave room for them below.
-    let number = if id >> 24 == 0 { id } else { 0x00f0_0000 | ((id >> 8) & 0xffff) };
-    // Odd factors and folded halves: no two numbers of 24 bits meet.
-    let mixed = number.wrapping_mul(0x009e_3779) & 0x00ff_ffff;
-    let folded = (mixed ^ (mixed >> 12)).wrapping_mul(0x005b_d1e5) & 0x00ff_ffff;
-    let [red, green, blue, _] = folded.to_le_bytes();
-    [red, green, blue]
+    cohabit_render::instance_color(id)
 }
 
 /// The colours of a film of ids, with what each stands for.
@@ -123,13 +125,15 @@ pub fn write_ids(path: &Path, names: &BTreeMap<u32, String>) -> anyhow::Result<(
 mod tests {
     use std::collections::BTreeSet;
 
+    use cohabit_bus::{Block, message::FrameLayout};
+
     use super::*;
 
     #[test]
     fn each_thing_has_a_colour_of_its_own() {
         let objects = 0..5_000;
         let bodies = (1 << 20)..(1 << 20) + 64;
-        let surfaces = (0..32).map(|room| (1 << 24) + 256 * room);
+        let surfaces = (0..32).flat_map(|room| (0..8).map(move |surface| (1 << 24) + 256 * room + surface));
         let ids: Vec<u32> = objects.chain(bodies).chain(surfaces).collect();
         let colors: BTreeSet<_> = ids.iter().map(|id| color_of(*id)).collect();
         assert_eq!(colors.len(), ids.len());
@@ -137,8 +141,32 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_for_which_there_is_no_room_is_said() {
+        let write = |path: &str| write_png(Path::new(path), &[0; 3], [1, 1], png::ColorType::Rgb, png::BitDepth::Eight);
+        assert!(write("/dev/null").is_ok() && write("/dev/full").is_err());
+    }
+
+    #[test]
     fn what_is_near_is_bright() {
         assert_eq!([0.0, f32::INFINITY, FARTHEST_M].map(brightness), [0; 3]);
         assert!(brightness(0.5) > brightness(3.0) && brightness(3.0) > brightness(9.0));
+    }
+
+    #[test]
+    fn where_nothing_is_seen_the_distance_is_0() {
+        let layout = FrameLayout::new(3, 1, 1, &[Plane::Depth], 0);
+        let mut blocks = vec![Block::default(); Block::count_for(layout.bytes())];
+        let payload = &mut bytemuck::cast_slice_mut(&mut blocks)[..layout.bytes()];
+        let [_, depth_m, ..] = layout.split_mut(payload).planes;
+        let seen = [1.25, 80.0, cohabit_render::FAR_M];
+        bytemuck::cast_slice_mut::<u8, f32>(depth_m.unwrap()).copy_from_slice(&seen);
+        let path = std::env::temp_dir().join(format!("cohabit-distances-{}.png", std::process::id()));
+        write_depth(&path, &FrameView::new(payload).unwrap()).unwrap();
+        let decoder = png::Decoder::new(std::io::BufReader::new(File::open(&path).unwrap()));
+        let mut bytes = [0; 6];
+        decoder.read_info().unwrap().next_frame(&mut bytes).unwrap();
+        std::fs::remove_file(path).unwrap();
+        let millimetres: Vec<u16> = bytes.as_chunks().0.iter().copied().map(u16::from_be_bytes).collect();
+        assert_eq!(millimetres, [1250, u16::MAX, 0]);
     }
 }
