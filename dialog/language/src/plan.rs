@@ -5,6 +5,7 @@ mod clauses;
 mod device;
 mod motion;
 mod pour;
+mod process;
 pub(crate) mod remedy;
 pub(crate) mod settle;
 mod swap;

@@ -86,13 +86,14 @@ fn shot(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
 /// `move the football out of the way`: it is to be put away. `hang the shirt up to dry`: it is to be dried.
 fn moved(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (_, rest) = words.split_first().filter(|(first, _)| lexicon.wishes.movers.contains(*first))?;
-    let (thing, after) = thing(lexicon, rest)?;
-    let ends =
-        |ends: &PhraseTable<()>| ends.longest(after).is_some_and(|(length, ())| is_end(lexicon, &after[length..]));
-    if ends(&lexicon.wishes.to_dry) {
-        return Some(joined(&[&["dry"], &texts(thing)]));
-    }
-    ends(&lexicon.wishes.asides).then(|| joined(&[&["put"], &texts(thing), &["away"]]))
+    let split = |ends: &PhraseTable<()>| {
+        let is_there =
+            |at: &usize| ends.longest(&rest[*at..]).is_some_and(|(length, ())| is_end(lexicon, &rest[at + length..]));
+        let named = &rest[..(1..rest.len()).find(is_there)?];
+        thing(lexicon, named).filter(|(_, left)| left.is_empty()).map(|(thing, _)| texts(thing))
+    };
+    let dried = split(&lexicon.wishes.to_dry).map(|thing| joined(&[&["dry"], &thing]));
+    dried.or_else(|| split(&lexicon.wishes.asides).map(|thing| joined(&[&["put"], &thing, &["away"]])))
 }
 
 /// `you left the microwave open`: it is to be as it was.
