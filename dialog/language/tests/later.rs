@@ -396,7 +396,7 @@ fn it_gets_out_of_the_way_and_gets_things_out_of_it() {
         assert_eq!(talk.say(said), "move -1.00", "{said}");
     }
     let mut kitchen = Talk::new(&["plan House_Family Kitchen", "add Toy_Car on Kitchen_Island"]);
-    let done = kitchen.say("move the toy car out of the way");
+    let done = kitchen.say("move the toy car aside");
     assert!(done.starts_with("take Toy_Car, put "), "{done}");
 }
 

@@ -226,7 +226,10 @@ impl WayEntry {
 
     /// What a rule does with whatever is held, at things of the class that it names.
     fn by_rule(&self, catalog: &Catalog, rule: &Rule) -> Option<Process> {
-        let places = named(catalog, rule, Term::It).filter(|_| named(catalog, rule, Term::Held).is_none())?;
+        let places = named(catalog, rule, Term::It).filter(|places| !places.is_empty())?;
+        if named(catalog, rule, Term::Held).is_some() {
+            return None;
+        }
         let act = match rule.action {
             ActionKind::Fill => Act::Fill,
             ActionKind::Clean => Act::Clean,
@@ -246,6 +249,9 @@ impl WayEntry {
             always.flat_map(|effect| &effect.changes).any(|one| *one == Change::Set(term, flag, value))
         };
         let (it, held) = (named(catalog, rule, Term::It)?, named(catalog, rule, Term::Held));
+        if it.is_empty() || held.as_ref().is_some_and(Vec::is_empty) {
+            return None;
+        }
         if does(Term::Held) && rule.action == ActionKind::Place {
             let process = self.process(it, [Vec::new(), Vec::new()], vec![Act::Hold, Act::Place], None, catalog);
             return Some(Process { of: held.unwrap_or_default(), ..process });
@@ -272,13 +278,18 @@ impl WayEntry {
     fn by_devices(&self, catalog: &Catalog, doers: &[&Device], makes: Option<&Change>) -> Vec<Process> {
         let table = catalog.table();
         let mut processes: Vec<Process> = Vec::new();
-        for device in doers {
+        // What the catalogue lacks does nothing.
+        let is_there = |device: &&&Device| !of_ids(catalog, &device.classes).is_empty();
+        for device in doers.iter().filter(is_there) {
             let works: Vec<&Work> = works_of(device).filter_map(|name| table.work(name)).collect();
             if makes.is_some() && works.iter().any(|work| work.over == Over::Machine) {
                 processes.push(self.in_itself(catalog, device));
                 continue;
             }
             let at = of_ids(catalog, &places(table, device));
+            if at.is_empty() {
+                continue;
+            }
             let (machines, classes) = (of_ids(catalog, &device.works), of_ids(catalog, &device.classes));
             if let Some(other) = processes.iter_mut().find(|process| process.at == at) {
                 // Which of several sets it off is to be said.
@@ -354,6 +365,7 @@ fn classes_of_all<'e>(catalog: &Catalog, mut effects: impl Iterator<Item = &'e E
     classes.unwrap_or_default()
 }
 
+/// Those of them that the catalogue has.
 fn class_of(catalog: &Catalog, conditions: &[Condition], term: Term) -> Option<Vec<ClassId>> {
     conditions.iter().find_map(|condition| match &condition.test {
         Test::IsA(pattern) if condition.term == term && !condition.negated => Some(of_ids(catalog, &pattern.0)),
