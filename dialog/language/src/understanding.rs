@@ -3,7 +3,10 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
 use serde::{Deserialize, Serialize};
 
-use crate::{setting::named_in_a_word, words::prose};
+use crate::{
+    setting::named_in_a_word,
+    words::{intent::Intent, prose},
+};
 
 /// What the robot makes of what it was told.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -209,6 +212,11 @@ impl Step {
             | Action::GoTo { target: GoToTarget::Object(object) } => Some(object),
             _ => None,
         }
+    }
+
+    /// What it does that its action calls otherwise: to iron is to clean with an iron.
+    pub(crate) fn by_hand(&self) -> Option<Intent> {
+        Intent::BY_HAND.into_iter().find(|by_hand| self.says.starts_with(by_hand.doing()))
     }
 
     /// Whether it does more than look and point.

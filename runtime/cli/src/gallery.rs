@@ -1,11 +1,6 @@
 //! `cohabit gallery`: pictures of all there is to see, for reviewers.
 
-use std::{
-    fs::{self, File},
-    io::BufWriter,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{fs, path::PathBuf, sync::Arc};
 
 use anyhow::Context as _;
 use cohabit_cdf::{Catalog, Layout, Mission, RoomId};
@@ -17,7 +12,7 @@ use cohabit_render::{
 use cohabit_world::World;
 use indicatif::ProgressBar;
 
-use crate::{failure::bad_input, rendering::Rendering, terminal::shown, world::WorldPacks};
+use crate::{failure::bad_input, png_file::write_png, rendering::Rendering, terminal::shown, world::WorldPacks};
 
 /// Draws all objects in all their states, all floor plans from above and as maps, and a view of each room, as PNG
 /// files.
@@ -121,18 +116,9 @@ impl Gallery {
 
     fn write(&self, name: &str, rgba: &[u8], size: [u32; 2]) -> anyhow::Result<()> {
         let path = self.folder.join(format!("{name}.png"));
-        write_png(&path, rgba, size).with_context(|| path.display().to_string())
+        write_png(&path, rgba, size, png::ColorType::Rgba, png::BitDepth::Eight)
+            .with_context(|| path.display().to_string())
     }
-}
-
-fn write_png(path: &Path, rgba: &[u8], [width, height]: [u32; 2]) -> anyhow::Result<()> {
-    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(rgba)?;
-    // One that is dropped instead says nothing of a disk that is full.
-    Ok(writer.finish()?)
 }
 
 /// A room from its first viewpoint, as a person would see it.

@@ -49,6 +49,7 @@ mod pddl;
 mod pedestrians;
 mod peers;
 mod play;
+mod png_file;
 mod rendering;
 mod replay;
 mod rerun;

@@ -173,7 +173,7 @@ impl Deeds {
     fn done_to(&self, deed: &Deed) -> Option<ObjectId> {
         match deed.step.action {
             // What is ironed or watered is not in the hand: the iron or the can is.
-            _ if by_hand(&deed.step).is_some() => deed.step.object(),
+            _ if deed.step.by_hand().is_some() => deed.step.object(),
             Action::Place { .. }
             | Action::Interact { verb: Verb::Pour | Verb::Throw | Verb::Fill | Verb::Clean, .. } => {
                 self.held_before(deed)
@@ -241,14 +241,9 @@ fn is_of_step(step: &Step, intent: Intent) -> bool {
     let other_way = match intent {
         Intent::TurnOn => "turning off",
         Intent::TurnOff => "turning on",
-        _ => return by_hand(step).map_or_else(|| is_of(&step.action, intent), |by_hand| by_hand == intent),
+        _ => return step.by_hand().map_or_else(|| is_of(&step.action, intent), |by_hand| by_hand == intent),
     };
     is_of(&step.action, intent) && !step.says.starts_with(other_way)
-}
-
-/// What a step does that its action calls otherwise: to iron is to clean with an iron.
-fn by_hand(step: &Step) -> Option<Intent> {
-    Intent::BY_HAND.into_iter().find(|by_hand| step.says.starts_with(by_hand.doing()))
 }
 
 /// `opening the fridge` → `opened the fridge`.

@@ -45,11 +45,11 @@ impl Planner<'_> {
             }
             // What was unfolded is folded again, not closed.
             Action::Interact { verb: Verb::Open, object } => {
-                let does = if is_deed(step, Intent::Unfold) { Intent::Fold.doing() } else { "closing" };
+                let does = if step.by_hand() == Some(Intent::Unfold) { Intent::Fold.doing() } else { "closing" };
                 self.interact(Verb::Close, object, does);
             }
             Action::Interact { verb: Verb::Close, object } => {
-                let does = if is_deed(step, Intent::Fold) { Intent::Unfold.doing() } else { "opening" };
+                let does = if step.by_hand() == Some(Intent::Fold) { Intent::Unfold.doing() } else { "opening" };
                 self.interact(Verb::Open, object, does);
             }
             Action::Interact { verb: Verb::Toggle, object } if self.stays_on(object) => {
@@ -106,9 +106,4 @@ impl Planner<'_> {
         self.place_on(origin);
         Ok(())
     }
-}
-
-/// Whether that is what a step was called.
-fn is_deed(step: &Step, intent: Intent) -> bool {
-    step.says.starts_with(intent.doing())
 }

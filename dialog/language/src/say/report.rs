@@ -5,7 +5,7 @@ use cohabit_cdf::{Action, Catalog, GoToTarget, ObjectId, Status, Verb, state::St
 use crate::{
     known::{Known, contents, describe, process::Devices},
     understanding::Step,
-    words::{intent::Intent, prose},
+    words::prose,
 };
 
 /// How a step that looks under a thing or behind it is called.
@@ -62,7 +62,7 @@ fn interaction(
     verb: Verb,
     object: ObjectId,
 ) -> String {
-    if let Some(by_hand) = Intent::BY_HAND.into_iter().find(|by_hand| step.says.starts_with(by_hand.doing())) {
+    if let Some(by_hand) = step.by_hand() {
         let done = by_hand.doing().replace("ing", "ed");
         return format!("{the} is {done}");
     }
