@@ -168,6 +168,7 @@ fn laundry_is_dried_ironed_and_folded_by_what_the_pack_says() {
         &[("is the shirt wet?", "= No"), ("did you fold the shirt?", "= Yes"), ("is it folded?", "= Yes")],
     );
     answers(&mut talk, &[("did you close the shirt?", "= No")]);
+    means(LAUNDRY, &["iron the shirt", "now fold it up"], "close Shirt");
     means(LAUNDRY, &["fold the laundry basket"], "! I cannot fold the laundry basket.");
 }
 

@@ -300,7 +300,11 @@ impl Planner<'_> {
                     self.open_around(object, false);
                     self.interact(*verb, object, process.intent.doing());
                 }
-                Act::Rest => self.interact(Verb::Toggle, place, "turning off"),
+                Act::Rest => {
+                    self.interact(Verb::Toggle, place, "turning off");
+                    // What it was done to is spoken of, not the tool.
+                    self.focus.mention(object);
+                }
             }
         }
         Ok(())

@@ -140,8 +140,6 @@ impl Intent {
                 | Self::Shrink
                 | Self::Brew
                 | Self::Dry
-                | Self::Fold
-                | Self::Unfold
         )
     }
 
