@@ -26,7 +26,7 @@ use crate::{
         question::Question,
         saying,
     },
-    say::reply::HINT,
+    say::examples,
     understanding::Understanding,
     words::{
         intent::Intent,
@@ -38,11 +38,6 @@ use crate::{
 
 /// How many neighbours of a thing.
 const NEIGHBOURS: usize = 4;
-
-/// What people can say, as examples.
-pub(crate) const EXAMPLES: &str = "I can go to rooms and objects, pick things up and put them down, open, close, switch, fill, pour, clean, break, scan, heat, cool, \
-     repair and color things. For example: \"go to the break room\", \"pick up the red mug\", \"heat the mug in the microwave\", \
-     \"where is the milk?\". Say \"stop\" to stop me.";
 
 /// Answers questions in a scene.
 pub(crate) struct Answerer<'a> {
@@ -67,17 +62,19 @@ impl Answerer<'_> {
                 Some(room) if question.is_whether => self.whether_in(room),
                 _ => self.robot(),
             },
-            (QuestionKind::Abilities, _) => Understanding::answer(EXAMPLES),
+            (QuestionKind::Abilities | QuestionKind::HowTo, _) => {
+                Understanding::answer(examples::abilities(self.catalog, self.scene))
+            }
             (QuestionKind::Doing, _) => self.doing(),
             (QuestionKind::Goals, _) => self.goals(),
             (QuestionKind::Options, _) => self.options(),
-            (QuestionKind::HowTo, _) => Understanding::answer(EXAMPLES),
             (QuestionKind::Why, about) => self.why(about, question),
             (QuestionKind::Done, about) => self.done(about),
             (QuestionKind::DoneSoFar, _) => self.done_so_far(),
             (QuestionKind::Purpose, Some(phrase)) => self.purpose(phrase),
             (QuestionKind::Danger, about) => self.danger(about, question),
             (QuestionKind::People, _) => self.people(),
+            (QuestionKind::Rooms, _) => self.rooms(),
             (QuestionKind::Trouble, Some(phrase)) => self.with_object(phrase, |id| self.trouble(id)),
             (QuestionKind::Owner, Some(phrase)) => self.with_object(phrase, |id| self.owner(id)),
             (QuestionKind::Holder, Some(phrase)) => self.with_object(phrase, |id| self.holder(id)),
@@ -109,7 +106,7 @@ impl Answerer<'_> {
                 self.on_floor()
             }
             (QuestionKind::Contents, None) if self.context.focus.place.is_some() => {
-                self.context.focus.place.map_or_else(|| Understanding::refusal(HINT), |place| self.contents(place))
+                self.context.focus.place.map_or_else(|| self.hint(), |place| self.contents(place))
             }
             (QuestionKind::State | QuestionKind::Look | QuestionKind::Unknown | QuestionKind::Where, Some(phrase))
                 if phrase.pronoun == Some(Pronoun::Thing) && (phrase.is_any || self.is_about_any_thing(question)) =>
@@ -173,8 +170,16 @@ impl Answerer<'_> {
                 Understanding::lost(text.unwrap_or_else(|| saying::unresolved(&phrase)))
             }
             (QuestionKind::Where, None) => Understanding::lost("I cannot tell what you mean. Name it to me, please."),
-            _ => Understanding::lost(format!("I do not know how to answer that. {HINT}")),
+            _ => Understanding::lost(format!(
+                "I do not know how to answer that. {}",
+                examples::hint(self.catalog, self.scene)
+            )),
         }
+    }
+
+    /// What can be said, where there is nothing else to say.
+    pub(crate) fn hint(&self) -> Understanding {
+        Understanding::refusal(examples::hint(self.catalog, self.scene))
     }
 
     pub(crate) fn ground(&self) -> Ground<'_> {
@@ -228,7 +233,7 @@ impl Answerer<'_> {
 
     /// The same with what is known of the object.
     pub(crate) fn with_known(&self, phrase: &Phrase, then: impl Fn(&KnownObject) -> Understanding) -> Understanding {
-        let of = |id| self.scene.object(id).map_or_else(|| Understanding::refusal(HINT), &then);
+        let of = |id| self.scene.object(id).map_or_else(|| self.hint(), &then);
         self.with_object(phrase, of)
     }
 

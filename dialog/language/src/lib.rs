@@ -258,7 +258,7 @@ impl Language {
         if status.is_success() {
             return report::success(&self.catalog, &self.devices, scene, step, status);
         }
-        let planner = Planner::new(&self.catalog, &self.devices, self.judge(), scene, Focus::default());
+        let planner = Planner::new(&self.catalog, &self.devices, &self.habits, self.judge(), scene, Focus::default());
         let remedy = remedy::remedy(planner, step, status);
         let offer = remedy.as_ref().map(|remedy| remedy.question.as_str());
         report::failure(&self.catalog, scene, step, status, detail, offer)

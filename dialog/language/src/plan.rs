@@ -8,6 +8,7 @@ mod pour;
 mod process;
 pub(crate) mod remedy;
 pub(crate) mod settle;
+mod storage;
 mod swap;
 mod undo;
 
@@ -20,7 +21,7 @@ use crate::{
         judge::Judge,
         want::{Miss, Want},
     },
-    known::{Known, KnownObject, describe, imagine, process::Devices, sight},
+    known::{Known, KnownObject, describe, habits::Habits, imagine, process::Devices, sight},
     read::{
         phrase::Phrase,
         slot::{Role, Slot},
@@ -55,6 +56,7 @@ pub(crate) enum Fault {
 pub(crate) struct Planner<'a> {
     pub(crate) catalog: &'a Catalog,
     pub(crate) devices: &'a Devices,
+    pub(crate) habits: &'a Habits,
     pub(crate) judge: Judge<'a>,
     pub(crate) scene: Known,
     pub(crate) focus: Focus,
@@ -79,6 +81,7 @@ impl<'a> Planner<'a> {
     pub(crate) fn new(
         catalog: &'a Catalog,
         devices: &'a Devices,
+        habits: &'a Habits,
         judge: Judge<'a>,
         scene: &Known,
         focus: Focus,
@@ -86,6 +89,7 @@ impl<'a> Planner<'a> {
         Self {
             catalog,
             devices,
+            habits,
             judge,
             scene: scene.clone(),
             from_m: [scene.robot.position_m[0], scene.robot.position_m[1]],

@@ -1,6 +1,8 @@
 //! A turn of a conversation: an utterance, the scene and the conversation so far in, what the robot makes of it out. The only layer that
 //! knows all others.
 
+mod absent_room;
+mod alike;
 mod asked;
 mod cache;
 mod carry_out;

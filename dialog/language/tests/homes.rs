@@ -262,3 +262,74 @@ fn laundry_is_washed_in_the_machine_that_is_made_for_it() {
     talk.say_and_do("wash the shirt");
     answers(&mut talk, &[("what is dirty?", "= None that I know of."), ("what is wet?", "= The shirt in my hand.")]);
 }
+
+const CHILDREN: &[&str] = &["plan Flat_Two_Bed ChildrensRoom", "add Teddy_Bear on Bunk_Bed", "add Toy_Car on Bunk_Bed"];
+
+#[test]
+fn what_is_put_away_goes_where_such_things_are_kept_and_doors_are_shut_again() {
+    means(CHILDREN, &["put the toy car away"], "take Toy_Car, open Toy_Box, put Toy_Box, close Toy_Box");
+    let all = Talk::new(CHILDREN).say_and_do("tidy up the toys");
+    assert!(all.contains("take Teddy_Bear, put Toy_Box") && all.contains("take Toy_Car, put Toy_Box"), "{all}");
+    assert!(all.matches("open Toy_Box").count() == 1 && all.ends_with("close Toy_Box"), "{all}");
+    let food = [KITCHEN, &["add Juice_Carton on Kitchen_Island"]].concat();
+    let chilled = "take Juice_Carton, open Fridge_Freezer, put Fridge_Freezer, close Fridge_Freezer";
+    means(&food, &["put the juice away"], chilled);
+    means(
+        KITCHEN,
+        &["put the plate away"],
+        "take Dinner_Plate, open Wall_Cupboard, put Wall_Cupboard, close Wall_Cupboard",
+    );
+    // Where it is to go was said.
+    means(
+        &food,
+        &["put the juice away in the wall cupboard"],
+        "take Juice_Carton, open Wall_Cupboard, put Wall_Cupboard",
+    );
+}
+
+#[test]
+fn a_table_is_cleared_of_all_that_stands_on_it() {
+    let cleared = Talk::new(KITCHEN).say_and_do("put away everything on the kitchen island");
+    assert!(cleared.contains("take Dinner_Plate, open Wall_Cupboard, put Wall_Cupboard"), "{cleared}");
+    assert!(cleared.contains("take Tomato") && !cleared.contains("put Kitchen_Island"), "{cleared}");
+    // More than it is sure of is asked about first.
+    let asked = Talk::new(KITCHEN).say("clear the kitchen island");
+    assert!(asked == cleared || asked.starts_with("? I understand: picking up the apple"), "{asked}");
+    let mut talk = Talk::new(KITCHEN);
+    let asked = talk.say("clear the table");
+    assert!(asked.starts_with("? Which one do you mean: the dining table"), "{asked}");
+    assert!(talk.say_and_do("the coffee table").starts_with("take Remote_Control"));
+}
+
+#[test]
+fn rooms_are_those_of_the_home() {
+    let mut talk = Talk::new(CHILDREN);
+    let told = talk.say("which rooms are there in the house?");
+    assert!(told.starts_with("= I am in the children's room. Besides, there are the hallway"), "{told}");
+    assert!(talk.say("how many rooms are there?").contains("and the bathroom"));
+    assert_eq!(talk.say("go to the break room"), "! There is no break room here.");
+    assert_eq!(talk.say("bring the teddy to the break room"), "! There is no break room here.");
+    let lost = talk.say("what is the meaning of it all?");
+    assert!(!lost.contains("break room"), "{lost}");
+}
+
+#[test]
+fn what_is_kept_somewhere_is_put_there() {
+    means(KITCHEN, &["pick up the tomato", "keep it on the dining table"], "put Dining_Table");
+}
+
+#[test]
+fn a_bare_machine_is_the_one_that_is_there() {
+    let laundry = &["plan House_Family UtilityRoom"];
+    means(laundry, &["open the washing machine", "shut the machine"], "close Washing_Machine");
+}
+
+#[test]
+fn more_of_a_list_is_told_by_what_was_not_mentioned() {
+    for asked in ["and which are the six further things you did not mention?", "which are the other six?"] {
+        let mut talk = Talk::new(KITCHEN);
+        let first = talk.say("what can you see?");
+        let more = talk.say(asked);
+        assert!(more.starts_with("= I see") && more != first, "{asked} {more}");
+    }
+}

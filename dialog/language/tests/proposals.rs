@@ -133,3 +133,33 @@ fn an_answer_may_say_what_one_alone_of_the_plans_has() {
     let done = talk.say("open the fridge by the toaster");
     assert!(!done.contains("toggle"), "{done}");
 }
+
+/// What a rewriter writes that has read of offices alone.
+fn of_offices(said: &str, _: &[(bool, String)], _: &str) -> Vec<(String, f32)> {
+    let written: &[(&str, f32)] = match said {
+        "off you pop to the kitchen, there is a dear" => &[("go to the break room", 0.9)],
+        "well well what have we here then" => &[("what is in the break room?", 0.9)],
+        "in you go and see what the table has" => &[("go to the break room; what is on the dining table?", 0.9)],
+        "off with you, somewhere nice" => &[("go to the break room", 0.9)],
+        _ => &[],
+    };
+    written.iter().map(|(text, probability)| ((*text).to_owned(), *probability)).collect()
+}
+
+fn at_home(marks: &[&str], said: &str) -> String {
+    let mut talk = Talk::new(marks);
+    talk.language = Box::leak(Box::new(talk.language.clone().with_rewriter(of_offices)));
+    talk.say(said)
+}
+
+#[test]
+fn a_room_that_there_is_not_is_the_one_that_was_said_or_none() {
+    let hall = &["plan House_Family Hallway"];
+    assert_eq!(at_home(hall, "off you pop to the kitchen, there is a dear"), "go Kitchen");
+    let here = at_home(hall, "well well what have we here then");
+    assert!(here.starts_with("= I see") || here.starts_with("= In the hallway"), "{here}");
+    let table = at_home(hall, "in you go and see what the table has");
+    assert!(table.contains("dining table") && !table.contains("break room"), "{table}");
+    let lost = at_home(hall, "off with you, somewhere nice");
+    assert!(!lost.contains("break room") && !lost.starts_with("go "), "{lost}");
+}

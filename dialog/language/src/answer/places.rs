@@ -7,7 +7,6 @@ use crate::{
     ground::{self, want::Want},
     known::{KnownObject, contents, describe, floor, memory},
     read::phrase::Phrase,
-    say::reply::HINT,
     understanding::Understanding,
     words::{intent::Intent, lexicon::Side, prose},
 };
@@ -40,6 +39,18 @@ impl Answerer<'_> {
             return Understanding::whether(false, "I see nothing of note here.", Vec::new());
         }
         Understanding::answer(format!("{start} {}.", self.listed(&list)))
+    }
+
+    /// Which rooms there are, and in which of them it is.
+    pub(crate) fn rooms(&self) -> Understanding {
+        let here = self.scene.robot.room.name_in(self.catalog).to_lowercase();
+        let names = self.scene.room_names(self.catalog).map(str::to_lowercase).filter(|name| *name != here);
+        let others: Vec<String> = names.map(|name| format!("the {name}")).collect();
+        Understanding::answer(match others.as_slice() {
+            [] => format!("There is only the {here}, as far as I know, and I am in it."),
+            [other] => format!("I am in the {here}. Besides, there is {other}."),
+            others => format!("I am in the {here}. Besides, there are {}.", prose::list(others, "and")),
+        })
     }
 
     /// The room that words name.
@@ -172,7 +183,7 @@ impl Answerer<'_> {
 
     /// What is next to a thing, the nearest first.
     pub(crate) fn neighbours(&self, id: ObjectId) -> Understanding {
-        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let Some(object) = self.scene.object(id) else { return self.hint() };
         let apart_m = |other: &KnownObject| floor::distance_m(object.position_m, other.position_m);
         let is_free = |other: &&KnownObject| {
             let is_within = |inner: ObjectId, outer: ObjectId| self.scene.ancestors(inner).any(|one| one.id == outer);
@@ -197,7 +208,7 @@ impl Answerer<'_> {
     }
 
     pub(crate) fn distance(&self, id: ObjectId) -> Understanding {
-        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let Some(object) = self.scene.object(id) else { return self.hint() };
         let meters = self.scene.distance_m(object);
         let text = format!("{} is {meters:.1} m away from me.", self.short(id));
         Understanding::about(prose::sentence(&text), vec![id])

@@ -11,7 +11,7 @@ use crate::{
         question::Question,
         saying,
     },
-    say::{reply::HINT, report},
+    say::report,
     understanding::Understanding,
     words::{intent::Intent, prose},
 };
@@ -91,7 +91,7 @@ impl Answerer<'_> {
     }
 
     pub(crate) fn trouble(&self, id: ObjectId) -> Understanding {
-        let Some(object) = self.scene.object(id) else { return Understanding::refusal(HINT) };
+        let Some(object) = self.scene.object(id) else { return self.hint() };
         let failed = self.context.failed.as_ref().filter(|failure| failure.step.object() == Some(id));
         let text = match (self.facts().trouble(object), failed) {
             (Some(wrong), _) => wrong,

@@ -82,6 +82,32 @@ impl Habits {
         let all = sum(&mut self.rooms.iter().map(|(class, counts)| (*class, counts.iter().sum())));
         if all <= 0.0 { ENCLOSED / 2.0 } else { (inside + ENCLOSED * ANYWHERE) / (all + ANYWHERE) }
     }
+
+    /// How often things of this class, or of its kind, are in what encloses them, by the class of that.
+    pub(crate) fn kept_in(&self, catalog: &Catalog, class: ClassId) -> BTreeMap<ClassId, f32> {
+        let mut kept = BTreeMap::new();
+        for ((other, place), count) in &self.enclosed {
+            let is_kin = || are_kin(catalog.class(class), catalog.class(*other));
+            let weight = if *other == class {
+                1.0
+            } else if is_kin() {
+                LIKENESS
+            } else {
+                continue;
+            };
+            *kept.entry(*place).or_default() += weight * count;
+        }
+        kept
+    }
+}
+
+/// Whether two classes have a word in common that people call them by: a doll and a teddy are toys.
+fn are_kin(one: &ObjectClass, other: &ObjectClass) -> bool {
+    let words = |class: &ObjectClass| -> Vec<String> {
+        class.words.iter().chain([&class.name]).map(|word| word.to_lowercase()).collect()
+    };
+    let theirs = words(other);
+    words(one).iter().any(|word| theirs.contains(word))
 }
 
 /// How much the place of a thing of class `other` says about those classes.

@@ -110,7 +110,7 @@ impl Planner<'_> {
 
     /// Puts what is held on the best surface near by.
     pub(crate) fn put_down(&mut self, beside: Option<ObjectId>) -> Result<(), Fault> {
-        let Some(surface) = self.surface(beside) else {
+        let Some(surface) = self.surface(beside, None) else {
             let tables: Vec<ClassId> = self.classes(|class| is_table(self.catalog.class(class)));
             return Err(self.need(&tables, "I see no place where I could put this down."));
         };
@@ -138,10 +138,11 @@ impl Planner<'_> {
         self.nearest(&keyed).or(spoken)
     }
 
-    /// A table, desk or counter with room left: where `beside` stands, or else the nearest.
-    fn surface(&self, beside: Option<ObjectId>) -> Option<ObjectId> {
+    /// A table, desk or counter with room left, other than `except`: where `beside` stands, or else the nearest.
+    pub(crate) fn surface(&self, beside: Option<ObjectId>, except: Option<ObjectId>) -> Option<ObjectId> {
         let stands_on = beside.and_then(|id| self.scene.object(id)).and_then(|object| object.parent);
-        let fits: Vec<&KnownObject> = self.scene.objects.iter().filter(|object| self.is_table(object)).collect();
+        let fits: Vec<&KnownObject> =
+            self.scene.objects.iter().filter(|object| self.is_table(object) && Some(object.id) != except).collect();
         let cost = |object: &KnownObject| {
             let elsewhere = if object.room == self.scene.robot.room { 0.0 } else { 100.0 };
             let known_place = if Some(object.id) == stands_on { -2.0 } else { 0.0 };
@@ -151,11 +152,14 @@ impl Planner<'_> {
     }
 
     fn is_table(&self, object: &KnownObject) -> bool {
-        let class = self.catalog.class(object.class);
-        let surfaces = class.receptacle.iter().flat_map(|receptacle| &receptacle.surfaces);
+        is_table(self.catalog.class(object.class)) && self.has_room(object)
+    }
+
+    /// Whether there is a place left in or on it.
+    pub(crate) fn has_room(&self, object: &KnownObject) -> bool {
+        let surfaces = self.catalog.class(object.class).receptacle.iter().flat_map(|receptacle| &receptacle.surfaces);
         let anchors: u32 = surfaces.map(|surface| surface.anchors[0] * surface.anchors[1]).sum();
-        let taken = self.scene.contents(object.id).count();
-        is_table(class) && u32::try_from(taken).is_ok_and(|taken| taken < anchors)
+        u32::try_from(self.scene.contents(object.id).count()).is_ok_and(|taken| taken < anchors)
     }
 
     /// The classes of the catalogue for which `fits` holds.
@@ -194,6 +198,7 @@ impl Planner<'_> {
         }
         match &settled.goal {
             None if settled.is_back => self.put_back(object),
+            None if settled.is_stored => self.put_away(&[object]),
             None if settled.intent == Intent::Bring => {
                 let is_held = self.scene.robot.held == Some(object);
                 let here = self.scene.robot.room;
@@ -225,6 +230,10 @@ impl Planner<'_> {
         // `put them back`: each where it was taken from.
         if settled.is_back && settled.goal.is_none() {
             return objects.into_iter().try_for_each(|object| self.put_back(object));
+        }
+        if settled.is_stored && settled.goal.is_none() {
+            self.ask_what_is_cleared(settled)?;
+            return self.put_away(&objects);
         }
         let Some(goal) = &settled.goal else {
             return Err(Fault::Cannot("I can only carry one thing at a time. Tell me where to put them.".to_owned()));
@@ -288,6 +297,9 @@ impl Planner<'_> {
                 self.place_on(target);
                 Ok(())
             }
+            Place::Room(room) if !self.scene.may_have_room(room.id) => {
+                Err(Fault::Cannot(format!("There is no {} here.", room.name)))
+            }
             Place::Room(room) | Place::Viewpoint(room, _) => self.bring_to_room(object, room.id, settled.intent),
             Place::Here | Place::Side(_) | Place::Viewpoints(_) => {
                 self.hold(object)?;
@@ -325,7 +337,7 @@ impl Planner<'_> {
     }
 
     /// What a thing is on or in, or was when it was taken.
-    fn taken_from(&self, object: ObjectId) -> Option<ObjectId> {
+    pub(crate) fn taken_from(&self, object: ObjectId) -> Option<ObjectId> {
         if self.scene.robot.held != Some(object) {
             return self.scene.object(object)?.parent;
         }

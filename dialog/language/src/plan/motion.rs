@@ -65,6 +65,9 @@ impl Planner<'_> {
             rest.iter().for_each(|(preposition, place)| phrase.attach(*preposition, place.clone()));
         }
         match target {
+            Place::Room(room) if !self.scene.may_have_room(room.id) => {
+                return Err(Fault::Cannot(format!("There is no {} here.", room.name)));
+            }
             Place::Room(room) => self.go_to_room(room.id),
             Place::Viewpoint(room, number) => self.go_to_viewpoint(room.id, number),
             Place::Viewpoints(number) => self.go_to_viewpoint(self.scene.robot.room, number),

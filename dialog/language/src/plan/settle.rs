@@ -30,6 +30,8 @@ pub(crate) struct Settled {
     pub(crate) is_back: bool,
     /// Whether to be rid of it.
     pub(crate) is_away: bool,
+    /// Whether it is to go where such things are kept.
+    pub(crate) is_stored: bool,
     /// Whether it is to be left, somewhere or as it is.
     pub(crate) is_left: bool,
     /// Whether it was wished for.
@@ -78,6 +80,7 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
         is_inserted: clause.manner == Some(Manner::Insert),
         is_back: clause.manner == Some(Manner::Back),
         is_away: clause.manner == Some(Manner::Away),
+        is_stored: clause.manner == Some(Manner::Store),
     };
     for (index, (preposition, place)) in clause.places.iter().enumerate() {
         let role = Role::Place(index);
@@ -96,6 +99,12 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
             (Preposition::From, Place::Object(_))
                 if matches!(clause.intent, Intent::TurnOn | Intent::TurnOff | Intent::Toggle) => {}
             (Preposition::From, _) => settled.describe_object(Preposition::From, place),
+            // `put away everything on the table`
+            (Preposition::On | Preposition::In, Place::Object(_))
+                if settled.is_stored && settled.is_of_everything() =>
+            {
+                settled.describe_object(*preposition, &found(planner, place));
+            }
             _ if has_goal(clause.intent) => settled.take_place(planner, *preposition, place, role),
             _ => settled.describe_object(*preposition, place),
         }
@@ -104,7 +113,19 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
     settled
 }
 
+/// A place as the one thing that it means, if it means one.
+fn found(planner: &Planner<'_>, place: &Place) -> Place {
+    let Place::Object(phrase) = place else { return place.clone() };
+    let chosen = planner.ground().one(phrase, &Want::place(Intent::Place, &[], None)).ok();
+    Place::Object(Phrase { chosen, ..phrase.clone() })
+}
+
 impl Settled {
+    /// Whether it is about all things, whatever they are.
+    pub(crate) fn is_of_everything(&self) -> bool {
+        self.objects.last().is_some_and(|object| object.is_all && object.pronoun == Some(Pronoun::Thing))
+    }
+
     /// `from the green desk to the red one`, `the red apple next to the green one`: one of those named before it.
     fn name_goal(&mut self, planner: &Planner<'_>) {
         let Some(object) = self.objects.last() else { return };

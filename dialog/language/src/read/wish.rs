@@ -44,6 +44,8 @@ fn spoken(lexicon: &Lexicon, chunk: &[String]) -> Option<Vec<String>> {
         .or_else(|| subjected(lexicon, chunk))
         .or_else(|| shot(lexicon, chunk))
         .or_else(|| moved(lexicon, chunk))
+        .or_else(|| cleared(lexicon, chunk))
+        .or_else(|| kept(lexicon, chunk))
 }
 
 /// `it is the cereal that I want`
@@ -83,7 +85,7 @@ fn shot(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     (!is_carried).then(|| joined(&[&["use"], &texts(device), &["on"], &texts(thing)]))
 }
 
-/// `move the football out of the way`: it is to be put away. `hang the shirt up to dry`: it is to be dried.
+/// `move the football out of the way`: it is to be put somewhere else. `hang the shirt up to dry`: it is to be dried.
 fn moved(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let (_, rest) = words.split_first().filter(|(first, _)| lexicon.wishes.movers.contains(*first))?;
     let split = |ends: &PhraseTable<()>| {
@@ -93,7 +95,27 @@ fn moved(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
         thing(lexicon, named).filter(|(_, left)| left.is_empty()).map(|(thing, _)| texts(thing))
     };
     let dried = split(&lexicon.wishes.to_dry).map(|thing| joined(&[&["dry"], &thing]));
-    dried.or_else(|| split(&lexicon.wishes.asides).map(|thing| joined(&[&["put"], &thing, &["away"]])))
+    dried.or_else(|| split(&lexicon.wishes.asides).map(|thing| joined(&[&["put"], &thing])))
+}
+
+/// `keep them on the shoe rack`: they are to be put there.
+fn kept(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (_, rest) = words.split_first().filter(|(first, _)| *first == "keep")?;
+    let (thing, after) = thing(lexicon, rest)?;
+    let is_there = after.first().is_some_and(|word| matches!(word.as_str(), "on" | "in" | "inside" | "near" | "at"));
+    is_there.then(|| joined(&[&["put"], &texts(thing), &texts(after)]))
+}
+
+/// `clear the table`: what is on it is to be put away.
+fn cleared(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
+    let (length, ()) = lexicon.wishes.clearers.longest(words)?;
+    let (thing, after) = thing(lexicon, &words[length..])?;
+    let phrase = Reader::new(lexicon, thing).phrase().filter(|phrase| !phrase.namings.is_empty())?;
+    let classes = || phrase.namings.iter().map(|naming| &naming.class);
+    let is_furniture = classes().any(|class| lexicon.furniture.contains(class))
+        && !classes().any(|class| lexicon.carried.contains(class));
+    let is_whole = is_end(lexicon, after);
+    (is_furniture && is_whole).then(|| joined(&[&["put", "away", "every", "thing", "on"], &texts(thing)]))
 }
 
 /// `you left the microwave open`: it is to be as it was.

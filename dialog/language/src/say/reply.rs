@@ -14,10 +14,6 @@ use crate::{
     words::{intent::Intent, lexicon::Preposition, prose},
 };
 
-/// One or two of them, where a reply has something else to say first.
-pub(crate) const HINT: &str =
-    "You can tell me, for example, \"go to the break room\" or \"pick up the mug\", or ask \"what can you do?\"";
-
 /// Why something is done: who says it so plainly that there is nothing to interpret has asked for it.
 pub(crate) const ASKED_TO: &str = "you asked me to ";
 pub(crate) const UNDERSTOOD_TO: &str = "I understood that I should ";
@@ -111,9 +107,7 @@ pub(crate) fn apart(plans: &[&[Step]]) -> Vec<String> {
 pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent, role: Option<Role>) -> String {
     if !phrase.unknown.is_empty() && phrase.namings.is_empty() {
         let words = phrase.unknown.join(" ");
-        return format!(
-            "I do not know what \"{words}\" is. Name me something in the office, such as the mug or the fridge."
-        );
+        return format!("I do not know what \"{words}\" is. Name me something else, such as the mug or the fridge.");
     }
     let what = || saying::what_for(intent, role);
     match miss {
@@ -128,11 +122,11 @@ pub(crate) fn miss(phrase: &Phrase, miss: &Miss, intent: Intent, role: Option<Ro
 }
 
 /// What is said when nothing was understood.
-pub(crate) fn unclear(words: &[String]) -> Understanding {
+pub(crate) fn unclear(words: &[String], hint: &str) -> Understanding {
     if words.is_empty() {
-        return Understanding::lost(format!("I did not understand that. {HINT}"));
+        return Understanding::lost(format!("I did not understand that. {hint}"));
     }
-    Understanding::lost(format!("{} What shall I do? {HINT}", unknown(words)))
+    Understanding::lost(format!("{} What shall I do? {hint}", unknown(words)))
 }
 
 /// That it does not know these words.

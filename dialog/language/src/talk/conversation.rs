@@ -33,7 +33,7 @@ impl Conversation<'_> {
     }
 
     pub(crate) fn planner(&self, focus: Focus) -> Planner<'_> {
-        Planner::new(self.catalog, self.devices, self.judge, self.scene, focus)
+        Planner::new(self.catalog, self.devices, self.habits, self.judge, self.scene, focus)
     }
 
     pub(crate) fn ground<'c>(&'c self, focus: &'c Focus) -> Ground<'c> {

@@ -298,6 +298,10 @@ fn begun(ways: &[Way]) -> Option<(Way, Option<String>)> {
         let begun = Way { probability: shares.sum(), ..way.clone() };
         let all: f32 = longer.iter().map(|(one, _)| one.probability).sum();
         let (likeliest, more) = longer.into_iter().next()?;
+        // To look around as well does no harm.
+        if likeliest.only_looks() && begun.probability >= begun.least() {
+            return Some((Way { probability: begun.probability, ..likeliest.clone() }, None));
+        }
         let left = match likeliest.probability > all / 2.0 {
             // Nobody wants a question that they never asked, and what is not to be done is not done.
             _ if more.contains('?') || more.starts_with("not ") => None,

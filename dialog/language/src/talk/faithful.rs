@@ -27,6 +27,8 @@ const OTHER: &str = "other";
 const HOLDING: &str = "with";
 /// What stands before what something is done with.
 const MEANS: [&str; 4] = ["in", "with", "on", "from"];
+/// Of these, where it goes is what is asked for.
+const PUTS: [&str; 4] = ["put", "bring", "pour", "move"];
 /// Within so many words after `if` its `not` is said.
 const CLAUSE: usize = 6;
 
@@ -49,8 +51,9 @@ pub(crate) struct Source {
     has_condition: bool,
     /// Whether it is about this room.
     is_here: bool,
-    /// The rooms that were named, now or before.
+    /// The rooms that were named, now or before, and now.
     rooms: Vec<RoomId>,
+    pub(crate) rooms_said: Vec<RoomId>,
     /// What names things among the words that were said now, and which classes it may mean.
     things: Vec<(String, BTreeSet<ClassId>)>,
     /// The classes that anything may mean that was said, now or before.
@@ -76,6 +79,7 @@ impl Source {
             only_asks: only_asks(lexicon, said),
             has_condition: condition::has_condition(lexicon, said),
             rooms: before.iter().map(Vec::as_slice).chain([said]).flat_map(|words| rooms(lexicon, words)).collect(),
+            rooms_said: rooms(lexicon, said),
             is_here: HERE.iter().any(|here| format!(" {} ", said.join(" ")).contains(&format!(" {here} "))),
             has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
             words: said.iter().cloned().chain(before.into_iter().flatten()).collect(),
@@ -173,6 +177,9 @@ impl Conversation<'_> {
         };
         let without = |request: &str| {
             let words: Vec<String> = request.split(' ').map(str::to_owned).collect();
+            if PUTS.contains(&words[0].as_str()) {
+                return request.to_owned();
+            }
             let means = (2..words.len().saturating_sub(2)).find(|at| {
                 MEANS.contains(&words[*at].as_str()) && words[at + 1] == "the" && names_absent(&words[at + 2..])
             });

@@ -73,7 +73,11 @@ impl Conversation<'_> {
                     n_best.is_first_unread |= is_likeliest;
                     continue;
                 };
-                match n_best.hypotheses.iter_mut().find(|other| other.way.is_same(&way)) {
+                match n_best
+                    .hypotheses
+                    .iter_mut()
+                    .find(|other| other.way.is_same(&way) || self.comes_to(other, &way, &text))
+                {
                     Some(other) if nth == 0 => other.probability += probability,
                     Some(_) => {}
                     None => {
@@ -96,12 +100,20 @@ impl Conversation<'_> {
         Ok((n_best, evidence))
     }
 
+    /// Whether a way by this text is to do the same as another one with things that were not seen yet.
+    fn comes_to(&self, other: &Hypothesis, way: &Way, text: &str) -> bool {
+        let are_sought = other.way.context.search.is_some() || way.context.search.is_some();
+        let are_plans = other.way.steps().is_some() && way.steps().is_some();
+        are_sought && are_plans && self.asks_the_same(&other.text, text)
+    }
+
     /// What the rewriter wrote, without what it cannot know, and what else may be meant by that.
     fn edited(&self, text: &str, source: &Source) -> Vec<(Edit, String)> {
+        let text = self.with_rooms_there(text, source);
         let known = |text: &str| self.with_this_room(&self.without_invention(text, source), source);
-        let renamed = self.with_things_said(text, source);
+        let renamed = self.with_things_said(&text, source);
         let first = (if renamed == text { Edit::Kept } else { Edit::Renamed }, known(&renamed));
-        let swapped = self.with_thing_swapped(text, source).map(|text| (Edit::Swapped, known(&text)));
+        let swapped = self.with_thing_swapped(&text, source).map(|text| (Edit::Swapped, known(&text)));
         let without_means = (Edit::WithoutMeans, self.without_means(&first.1, source));
         let others = swapped.into_iter().chain([without_means]).filter(|(_, text)| *text != first.1);
         std::iter::once(first.clone()).chain(others).collect()

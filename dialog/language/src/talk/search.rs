@@ -279,7 +279,7 @@ impl Conversation<'_> {
 }
 
 /// The classes that the words mean most.
-fn classes_of(phrase: &Phrase) -> Vec<ClassId> {
+pub(crate) fn classes_of(phrase: &Phrase) -> Vec<ClassId> {
     let best = phrase.namings.iter().map(|naming| naming.weight).fold(0.0, f32::max);
     let is_best = |naming: &&crate::words::lexicon::Naming| naming.weight > best - 0.25;
     phrase.namings.iter().filter(is_best).map(|naming| naming.class).collect()

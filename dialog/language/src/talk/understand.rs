@@ -18,10 +18,7 @@ use crate::{
         phrase::{Phrase, Place, RelationKind},
         question, segments, tidy,
     },
-    say::{
-        ask,
-        reply::{self, HINT},
-    },
+    say::{ask, examples, reply},
     stop::{self, Stop, said::Firmness},
     talk::{conversation::Conversation, room_kind, way::Way},
     understanding::{Asking, Understanding},
@@ -166,7 +163,7 @@ impl Conversation<'_> {
 
     pub(crate) fn understand_all(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         if words.iter().all(|word| token::is_punctuation(word)) {
-            return Understanding::refusal(format!("I did not hear anything. {HINT}"));
+            return Understanding::refusal(format!("I did not hear anything. {}", self.hint()));
         }
         // `wait, how many are there?`, in answer to a question
         let words =
@@ -337,9 +334,14 @@ impl Conversation<'_> {
         self.plan(clause::joined(clauses), Consent::default(), context)
     }
 
+    fn hint(&self) -> String {
+        examples::hint(self.catalog, self.scene)
+    }
+
     /// That nothing was understood, and the words that nobody ever met.
     pub(crate) fn unclear(&self, words: &[String]) -> Understanding {
-        reply::unclear(&words.iter().filter(|word| !spelling::is_english(word)).cloned().collect::<Vec<_>>())
+        let words: Vec<String> = words.iter().filter(|word| !spelling::is_english(word)).cloned().collect();
+        reply::unclear(&words, &self.hint())
     }
 
     /// `both apples on the plate`, of such as are not on it: there they are to be.

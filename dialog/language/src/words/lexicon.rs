@@ -56,6 +56,8 @@ pub(crate) enum Manner {
     Away,
     /// To where it was taken from.
     Back,
+    /// To where such things are kept.
+    Store,
     /// In a color, said or not.
     Color,
 }
@@ -244,6 +246,8 @@ pub(crate) struct Lexicon {
     pub(crate) kinds: BTreeSet<String>,
     /// What can be picked up.
     pub(crate) carried: BTreeSet<ClassId>,
+    /// Furniture that things stand on, and no machine.
+    pub(crate) furniture: BTreeSet<ClassId>,
     /// All words that name a class, by its index.
     pub(crate) class_words: Vec<BTreeSet<String>>,
     pub(crate) vocabulary: Vocabulary,

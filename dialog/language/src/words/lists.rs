@@ -82,6 +82,7 @@ pub(crate) struct Wishes {
     pub(crate) shooters: PhraseTable<()>,
     /// Verbs of moving a thing, and where to, if anywhere else will do.
     pub(crate) movers: BTreeSet<String>,
+    pub(crate) clearers: PhraseTable<()>,
     pub(crate) asides: PhraseTable<()>,
     pub(crate) to_dry: PhraseTable<()>,
 }

@@ -31,6 +31,8 @@ impl Lexicon {
             let id = ClassId(index);
             if class.has(Property::Pickupable) {
                 self.carried.insert(id);
+            } else if class.receptacle.as_ref().is_some_and(|kind| !kind.enclosed) && !class.has(Property::Toggleable) {
+                self.furniture.insert(id);
             }
             self.name_class(&class.name, id, 1.0);
             self.name_class(&class.id, id, 1.0);

@@ -55,6 +55,8 @@ pub(crate) enum QuestionKind {
     Time,
     /// Who is there.
     People,
+    /// Which rooms there are.
+    Rooms,
 }
 
 impl QuestionKind {
@@ -62,7 +64,14 @@ impl QuestionKind {
     pub(crate) const fn stands_alone(self) -> bool {
         matches!(
             self,
-            Self::Done | Self::DoneSoFar | Self::Danger | Self::Rest | Self::Recording | Self::Time | Self::People
+            Self::Done
+                | Self::DoneSoFar
+                | Self::Danger
+                | Self::Rest
+                | Self::Recording
+                | Self::Time
+                | Self::People
+                | Self::Rooms
         )
     }
 }

@@ -1,0 +1,81 @@
+//! Where what is put away goes: `put the milk away`, `tidy up the toys`.
+
+use cohabit_cdf::{ObjectId, Property, Verb, state::StateFlag};
+
+use crate::{
+    ground::want::Want,
+    known::KnownObject,
+    plan::{Fault, Planner, settle::Settled},
+    read::slot::Role,
+};
+
+/// How much less often things like it may be kept in a place than in that which has most of them.
+const AS_USUAL: f32 = 0.5;
+
+impl Planner<'_> {
+    /// Puts things where such things are kept, or else on the best surface near by; what was shut is shut again in the end.
+    pub(crate) fn put_away(&mut self, objects: &[ObjectId]) -> Result<(), Fault> {
+        let mut shut: Vec<ObjectId> = Vec::new();
+        for object in objects.iter().copied() {
+            let Some(storage) = self.storage_of(object) else {
+                self.put_elsewhere(object)?;
+                continue;
+            };
+            if self.scene.object(object).is_some_and(|known| known.parent == Some(storage)) {
+                self.notes.push(format!("{} is in {} already", self.the(object), self.the(storage)));
+                continue;
+            }
+            self.hold(object)?;
+            if self.is_shut(storage) {
+                shut.push(storage);
+            }
+            self.place_on(storage);
+        }
+        shut.into_iter().for_each(|storage| self.interact(Verb::Close, storage, "closing"));
+        Ok(())
+    }
+
+    /// `put away everything on the table`: which table, where that is not known.
+    pub(crate) fn ask_what_is_cleared(&self, settled: &Settled) -> Result<(), Fault> {
+        let described = settled.objects.last().filter(|_| settled.is_of_everything());
+        for relation in described.iter().flat_map(|object| &object.relations).filter(|one| one.to.chosen.is_none()) {
+            let want = Want::place(settled.intent, &[], None);
+            self.find_one(&relation.to, &want, Some(Role::Place(0)))?;
+        }
+        Ok(())
+    }
+
+    /// Puts a thing that has no place of its own on another surface than that where it is.
+    fn put_elsewhere(&mut self, object: ObjectId) -> Result<(), Fault> {
+        let from = self.taken_from(object);
+        self.hold(object)?;
+        match self.surface(None, from) {
+            Some(surface) => {
+                self.place_on(surface);
+                Ok(())
+            }
+            None => self.put_down(None),
+        }
+    }
+
+    /// The nearest of the places with doors in which the floor plans keep such things; that in which it is comes first.
+    fn storage_of(&self, object: ObjectId) -> Option<ObjectId> {
+        let known = self.scene.object(object)?;
+        let kept = self.habits.kept_in(self.catalog, known.class);
+        let share = |place: &KnownObject| kept.get(&place.class).copied().unwrap_or_default();
+        let places = || self.scene.objects.iter().filter(|place| self.is_storage(place, object));
+        let most = places().map(share).fold(0.0, f32::max);
+        let usual = || places().filter(|place| share(place) > 0.0 && share(place) >= AS_USUAL * most);
+        let within = usual().find(|place| known.parent == Some(place.id)).map(|place| place.id);
+        within.or_else(|| self.nearest_of(usual()))
+    }
+
+    /// Whether a thing can be kept in it: no machine that is started, not locked, and with room left.
+    fn is_storage(&self, place: &KnownObject, object: ObjectId) -> bool {
+        let class = self.catalog.class(place.class);
+        let is_machine = [Property::Toggleable, Property::Pickupable].into_iter().any(|property| class.has(property));
+        let is_within = self.scene.object(object).is_some_and(|known| known.parent == Some(place.id));
+        let is_locked = place.has(StateFlag::Locked);
+        class.has(Property::Receptacle) && !is_machine && !is_locked && (is_within || self.has_room(place))
+    }
+}
