@@ -7,6 +7,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    catalog::{Catalog, ClassId},
     flag_key::flag_key,
     state::{Color, Fluid, StateFlag},
 };
@@ -21,6 +22,12 @@ impl InstancePattern {
     #[must_use]
     pub fn is_wildcard(&self) -> bool {
         self.0.ends_with('*')
+    }
+
+    /// The class whose things it means, if it is a class and `_*`: `Egg_*` is any egg, and no egg box.
+    #[must_use]
+    pub fn class_in(&self, catalog: &Catalog) -> Option<ClassId> {
+        self.0.strip_suffix("_*").and_then(|class| catalog.find(class))
     }
 
     /// Whether `instance` is meant.

@@ -247,7 +247,8 @@ impl View for SymbolicState {
                 && self.is_accessible(*id)
                 && !self.is(*id, StateFlag::Sparking)
         };
-        self.existing().filter(|id| table.is_basin(&self.class(*id).id)).find(is_at_hand)
+        let basins = self.existing().filter(|id| table.is_basin(&self.class(*id).id)).filter(is_at_hand);
+        basins.min_by_key(|id| !self.is(*id, StateFlag::Toggled))
     }
 
     fn within(&self, id: ObjectId, range: Range) -> bool {

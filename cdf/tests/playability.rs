@@ -5,7 +5,7 @@
 use std::sync::LazyLock;
 
 use cohabit_cdf::{
-    Catalog,
+    Catalog, WorldData, WorldPack,
     mission::{Problem, Severity, read_mission},
 };
 use serde_json::{Value, json};
@@ -48,6 +48,8 @@ fn goals_that_cannot_be_met() {
         (json!([{"Apple_1": "isEmpty=false"}]), "nothing can be in or on `Apple_1`: Apple is no receptacle"),
         (json!([{"Bowl_01_1": "isOpen=true"}]), "`Bowl_01_1` never gets into this state: Bowl is not openable"),
         (json!([{"Bowl_01_*": "isOpen=true"}]), "`Bowl_01_*` never gets into this state: Bowl is not openable"),
+        (json!([{"Apple_1": "isWet=true"}]), "`Apple_1` never gets into this state: nothing gets a Apple into it"),
+        (json!([{"Apple_1": "isWet=false"}]), ""),
         (json!([{"Apple_1": "isFilled=Milk"}]), "`Apple_1` never gets into this state: Apple is not fillable"),
         (json!([{"Apple_1": "isFilled=true"}]), "`Apple_1` never gets into this state: Apple is not fillable"),
         (json!([{"Apple_1": "Contains=Bowl_01_1"}]), "nothing can be in or on `Apple_1`: Apple is no receptacle"),
@@ -74,6 +76,29 @@ fn goals_that_cannot_be_met() {
         ),
     ] {
         check_goal(states, reason);
+    }
+}
+
+#[test]
+fn some_states_are_of_some_things_alone() {
+    let homes = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
+    for (thing, state, start, expected) in [
+        ("Towel_1", "isWet", false, true),
+        ("Flower_Pot_1", "isWet", false, true),
+        ("Kettle_1", "isWet", false, false),
+        ("Kettle_1", "isWet", true, true),
+        ("Shirt_1", "isCreased", false, true),
+        ("Flower_Pot_1", "isCreased", false, false),
+        ("Shirt_1", "isFolded", false, true),
+        ("Kettle_1", "isFolded", false, false),
+    ] {
+        let states = if start { json!([{ state: "true" }]) } else { json!([]) };
+        let mission = json!({
+            "scene": {"roomLocation": ["BreakRoom"], "required_objects": [{"name": thing, "state": states}]},
+            "task_goals": [{"goal_id": 0, "object_states": [{ thing: format!("{state}=true") }]}],
+        });
+        let read = read_mission("m", &mission.to_string(), homes.catalog());
+        assert_eq!(read.is_ok(), expected, "{thing} {state}");
     }
 }
 
@@ -179,6 +204,13 @@ fn places_that_are_not_there_or_take_nothing_more() {
         "warning: `Microwave_01_10000` is in the break room, not in the robotics lab; the receptacle counts",
         true,
     );
+    check_objects(
+        json!([{"name": "Microwave_01_10000", "roomLocation": ["Lab1"]}]),
+        "warning: `Microwave_01_10000` is in the break room, not in the robotics lab; the layout counts",
+        true,
+    );
+    // What can be carried is brought there.
+    check_objects(json!([{"name": "Apple_10000", "roomLocation": ["Lab1"]}]), "", true);
     check_objects(
         json!([{"name": "Apple_1", "printingObject": "Hammer"}]),
         "warning: a Apple prints nothing; say it of a `Printer_Cartridge`",

@@ -142,6 +142,8 @@ function startDriving(body) {
 }
 
 function stopDriving(why) {
+  // Who asked for a body and does not get it is told as well.
+  if (why) toast(why, "en");
   if (!isDriving()) return;
   const was = driven;
   driven = null;
@@ -155,7 +157,6 @@ function stopDriving(why) {
   view.setAttribute("aria-label", labelBefore);
   if (isLookingThrough(was.camera) && before) lookThroughCamera(before);
   before = null;
-  if (why) toast(why, "en");
 }
 
 // ---------------------------------------------------------------------------------------------- moving

@@ -17,6 +17,8 @@ const later = new Set();
 /** The one that is shown, and how to read its answers. */
 let shown = null;
 let fields = [];
+/** The fields of each that was shown and not answered yet, by its name: what was filled in before it was put off stands there again. */
+const begun = new Map();
 let endedAt = null;
 /** Whether there is a mission that is not over. */
 let isRunning = false;
@@ -68,7 +70,8 @@ function show(questionnaire) {
   shown = questionnaire;
   byId("survey-title").textContent = questionnaire.title;
   byId("survey-about").textContent = questionnaire.about;
-  fields = questionnaire.items.map(fieldOf);
+  fields = begun.get(questionnaire.name) ?? questionnaire.items.map(fieldOf);
+  begun.set(questionnaire.name, fields);
   byId("survey-items").replaceChildren(...fields.map(({ row }) => row));
   showProblem("");
   card.showModal();
@@ -195,6 +198,7 @@ export function takeAnswered({ questionnaire, problem }) {
     return;
   }
   answered.add(questionnaire);
+  begun.delete(questionnaire);
   if (shown?.name === questionnaire) close();
   showButton();
   // The button that had the focus may be gone.

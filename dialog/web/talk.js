@@ -66,14 +66,14 @@ export function clearChat() {
 export function takeLine(line) {
   const atEnd = log.scrollHeight - log.scrollTop - log.clientHeight < NEAR_END_PX;
   const replayed = log.hasAttribute("aria-busy");
-  if (line.from !== "game") closeQuestions();
+  if (line.from !== "game") closeQuestions(line);
   const bubble = lineOf(line);
   const speaker = line.from + speakerOf(line);
   if (speaker === lastSpeaker) bubble.classList.add("follows");
   if (!replayed) bubble.classList.add("fresh");
   lastSpeaker = speaker;
   log.append(bubble);
-  if (line.from !== "game") input.placeholder = line.kind === "question" ? words("answer_robot") : words("tell_robot");
+  if (line.from !== "game") input.placeholder = log.querySelector(OPEN_QUESTION) ? words("answer_robot") : words("tell_robot");
   if (isMine(line)) {
     remember(line.text);
     byId("chips").hidden = true;
@@ -89,8 +89,8 @@ function isMine(line) {
   return line.from === "person" && !speakerOf(line);
 }
 
-/** The answers that a question offers, numbered if they are objects; clicking on one gives it. */
-function answersOf(answers) {
+/** The answers that the question of a body offers, numbered if they are objects; clicking on one gives it. */
+function answersOf(answers, body) {
   const list = element("div", "answers");
   list.lang = "en";
   list.append(...answers.map(({ text, object }, index) => {
@@ -99,7 +99,8 @@ function answersOf(answers) {
     if (object !== undefined) button.append(element("b", "answer-number", String(index + 1)), " ");
     button.append(text);
     button.addEventListener("click", () => {
-      if (object === undefined) say(text);
+      // Another robot may have asked something since.
+      if (object === undefined) say(robotNames.has(body) ? `${robotNames.get(body)}, ${text}` : text);
       else choose(object);
       if (!narrow.matches) input.focus();
     });
@@ -112,16 +113,27 @@ function choose(object) {
   sendOrSay({ type: "choose", object });
 }
 
-/** An answer is given once: what came before is past. */
-function closeQuestions() {
-  for (const button of log.querySelectorAll(".answers button:enabled")) button.disabled = true;
-  floor.forgetMarks();
+const OPEN_QUESTION = ".kind-question:not(.closed)";
+
+/**
+ * An answer is given once: what a robot asked before this line of the conversation with it is past. Its question waits on where another
+ * robot speaks, and where it tells what came of something that it was told before.
+ */
+function closeQuestions({ body, turn }) {
+  const isPast = ({ dataset }) => dataset.turn === "0" || (dataset.body === String(body ?? "") && Number(dataset.turn) <= turn);
+  const past = [...log.querySelectorAll(OPEN_QUESTION)].filter(isPast);
+  for (const question of past) {
+    question.classList.add("closed");
+    for (const button of question.querySelectorAll(".answers button")) button.disabled = true;
+  }
+  if (past.length) floor.forgetMarks();
 }
 
 function lineOf(line) {
-  const { from, kind, answers = [] } = line;
+  const { from, kind, body, turn, answers = [] } = line;
   let { text } = line;
   const bubble = element("div", `line from-${from} kind-${kind}`);
+  if (kind === "question") Object.assign(bubble.dataset, { body: body ?? "", turn });
   const name = speakerOf(line);
   const unnamed = { person: words("you_said"), robot: words("robot_said"), game: "" }[from] ?? "";
   if (name) bubble.append(element("b", "line-speaker", name), element("span", "unseen", ": "));
@@ -140,7 +152,7 @@ function lineOf(line) {
   const said = element("span", "line-text", text);
   said.lang = "en";
   bubble.append(said);
-  if (answers.length) bubble.append(answersOf(answers));
+  if (answers.length) bubble.append(answersOf(answers, body));
   return bubble;
 }
 

@@ -18,7 +18,7 @@ window.cohabit = { frames: 0, state: null, view: null, seen: null, marks: [], so
 
 /** What each robot holds back, by its body. */
 const proposals = new Map();
-/** What is shown of them: the first, with the body of its robot. */
+/** What is shown of them: the first that is to be decided, with the body of its robot. */
 let shown = null;
 let phrases = [];
 let expressions = [];
@@ -107,7 +107,9 @@ function takeProposal({ body, proposal }) {
 const KINDS = { plan: "The robot would do this:", question: "The robot would ask:", answer: "The robot would answer:", refusal: "The robot would refuse:", stop: "The robot would stop:" };
 
 function showProposal() {
-  const [first] = proposals;
+  const all = [...proposals];
+  // What is to be decided comes before what was decided and is answered later.
+  const first = all.find(([, proposal]) => !proposal.is_decided) ?? all[0];
   const before = shown;
   shown = first ? { body: first[0], ...first[1] } : null;
   window.cohabit.proposal = shown;

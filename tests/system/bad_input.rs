@@ -115,11 +115,35 @@ fn a_name_for_nobody_is_named() {
 }
 
 #[test]
+fn a_world_pack_that_rerun_cannot_show_is_said_at_once() {
+    check(&["make_tea", "--world", "homes", "--rerun"], &["`--rerun` cannot show a session of a world pack"]);
+}
+
+#[test]
 fn a_file_that_is_no_log_is_not_replayed() {
     let path = file("no-log.mcap", "hello");
     let output = run(COHABIT, &["replay", path.to_str().unwrap()]).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("no-log.mcap"));
+}
+
+#[test]
+fn what_is_made_of_a_log_overwrites_no_log() {
+    const LOG: &[u8] = b"\x89MCAP0\r\nwhat was recorded";
+    let path = file("recorded.mcap", "");
+    fs::write(&path, LOG).unwrap();
+    let recorded = path.to_str().unwrap();
+    for arguments in [
+        &["replay", "--rerun", recorded, "other.mcap"][..],
+        &["replay", "other.mcap", "--video", recorded],
+        &["compare", "one.mcap", "other.mcap", "--out", recorded],
+    ] {
+        let output = run(COHABIT, arguments).unwrap();
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+        assert!(text.contains("recorded.mcap: this is a session log"), "{arguments:?}: {text}");
+        assert_eq!(fs::read(&path).unwrap(), LOG, "{arguments:?}");
+    }
 }
 
 #[test]

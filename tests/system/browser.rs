@@ -78,3 +78,26 @@ fn a_person_answers_a_question_with_a_click() {
     drop((tab, browser));
     play.end().unwrap();
 }
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn a_question_waits_on_while_another_robot_speaks() {
+    let browser = Browser::start().unwrap();
+    let arguments = ["make_cereal", "--ask", "always", "--knows", "everything", "--body", "robot@BreakRoom"];
+    let robots = ["--agent", "dialog", "--agent", "dialog@1", "--name", "0=Rosie", "--name", "1=Bob"];
+    let play = Play::start(COHABIT, &[&arguments[..], &robots[..]].concat()).unwrap();
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
+    let answers = "document.querySelectorAll('.answers button:enabled')";
+    tab.evaluate("document.querySelector('#chat-input').focus()").unwrap();
+    tab.type_and_enter("Rosie, go to the main office").unwrap();
+    tab.wait_until(&format!("{answers}.length === 2")).unwrap();
+    tab.type_and_enter("Bob, where are you?").unwrap();
+    tab.wait_until("document.querySelector('#chat').innerText.includes('I am in the break room')").unwrap();
+    assert_eq!(tab.evaluate(&format!("{answers}.length")).unwrap(), json!(2), "Rosie waits for an answer yet");
+    tab.evaluate(&format!("{answers}[0].click()")).unwrap();
+    tab.wait_until("window.cohabit.state.robot.room === 'MainOffice'").unwrap();
+    assert_eq!(tab.evaluate(&format!("{answers}.length")).unwrap(), json!(0), "an answer is given once");
+    drop((tab, browser));
+    play.end().unwrap();
+}

@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use cohabit_bus::{Sample, Session, Shm, Subscriber, Topic, Transport as _, message::StateView};
-use cohabit_tests::{Browser, Page, Play, run};
+use cohabit_tests::{Browser, Page, Play, Scratch, run};
 use serde_json::json;
 
 use crate::COHABIT;
@@ -170,6 +170,30 @@ fn a_person_walks_in_from_the_page_by_keys() {
     assert_eq!(tab.evaluate("window.cohabit.driving").unwrap(), json!(1), "the first Escape leaves the field alone");
     press(&mut tab, "Escape", "Escape", Some("window.cohabit.driving === null"));
     tab.wait_until("window.cohabit.view === 'spectator/0' && !document.querySelector('#walk-in').hidden").unwrap();
+    drop((tab, browser));
+    play.end().unwrap();
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn who_cannot_walk_in_is_told_why() {
+    let browser = Browser::start().unwrap();
+    let scratch = Scratch::new("walk-in");
+    let schedule = scratch.write("stands.toml", "[[entry]]\nperson = 1\nstay_s = 3600\n");
+    let pedestrian = format!("pedestrian={schedule}");
+    let play =
+        Play::start(COHABIT, &["--body", "person@MainOffice", "--agent", "dialog", "--agent", &pedestrian]).unwrap();
+    let bus = Shm::join(&Session::new(&play.session).unwrap()).unwrap();
+    let mut states = bus.subscriber(Topic::State).unwrap();
+    let is_commanded = |sample: Sample| StateView::new(sample.payload()).unwrap().bodies[1].commander != 0;
+    while !states.latest().unwrap().is_some_and(is_commanded) {
+        std::thread::park_timeout(std::time::Duration::from_millis(20));
+    }
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    tab.wait_until("window.cohabit?.frames > 0 && !document.querySelector('#walk-in').hidden").unwrap();
+    tab.evaluate("document.querySelector('#walk-in').click()").unwrap();
+    tab.wait_until("document.querySelector('#toasts').textContent.includes('--drive all')").unwrap();
+    assert_eq!(tab.evaluate("window.cohabit.driving").unwrap(), json!(null));
     drop((tab, browser));
     play.end().unwrap();
 }

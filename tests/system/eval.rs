@@ -60,6 +60,16 @@ fn a_mission_stops_at_its_caps() {
 }
 
 #[test]
+fn a_log_of_an_earlier_call_is_said_before_anything_is_played() {
+    let folder = folder("twice");
+    std::fs::write(folder.join("make_cereal.mcap"), "of an earlier call").unwrap();
+    let record = ["--only", "make_cereal", "--record", folder.to_str().unwrap()];
+    let again = run(COHABIT, &[&["eval", builtin().as_str()], &record[..]].concat()).unwrap();
+    let text = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(again.status.code() == Some(2) && text.contains("make_cereal.mcap: there is a log"), "{again:?}");
+}
+
+#[test]
 fn what_failed_first_is_told() {
     let folder = folder("trouble");
     let mission = Path::new(&builtin()).join("cold_soda.json");

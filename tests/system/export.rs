@@ -1,6 +1,6 @@
 //! Logs as tables, and what is said where rerun would be needed.
 
-use std::{fs, process::Command};
+use std::{fs, os::unix::fs::PermissionsExt as _, process::Command};
 
 use cohabit_tests::{Scratch, run};
 
@@ -28,6 +28,10 @@ fn logs_of_an_evaluation_are_tables_and_conditions() {
     }
     let printed = run(COHABIT, &["export", &never, "--summary"]).unwrap();
     assert!(String::from_utf8_lossy(&printed.stdout).contains("no setting differs"));
+    let one = fs::read_dir(&never).unwrap().next().unwrap().unwrap().path();
+    let twice = run(COHABIT, &["export", &never, one.to_str().unwrap(), "--summary", "--json"]).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&twice.stdout).unwrap();
+    assert_eq!(summary["sessions"], 2, "a log that is named twice is one session");
 }
 
 #[test]
@@ -44,6 +48,27 @@ fn what_cannot_be_exported_is_named() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
         assert!(text.contains(part), "{arguments:?}: no `{part}` in {text}");
     }
+}
+
+#[test]
+fn a_summary_for_programs_is_all_that_is_printed_beside_parquet_tables() {
+    let scratch = Scratch::new("export-quiet");
+    let [logs, out] = ["logs", "tables"].map(|name| scratch.path(name));
+    let made = ["eval", "--user", "simulated", "--missions", "1", "--seed=3", "--record", &logs];
+    assert!(run(COHABIT, &made).unwrap().status.success());
+    let own = scratch.path("cohabit");
+    fs::hard_link(COHABIT, &own).or_else(|_| fs::copy(COHABIT, &own).map(drop)).unwrap();
+    // Beside it something that makes the folder and says so, as the program for rerun does.
+    let beside =
+        scratch.write("cohabit-rerun", "#!/bin/sh\nfor last; do :; done\nmkdir -p \"$last\"\necho 9 rows written\n");
+    fs::set_permissions(beside, fs::Permissions::from_mode(0o755)).unwrap();
+    let arguments = ["export", &logs, "--out", &out, "--format", "parquet", "--summary"];
+    let told = run(&own, &arguments).unwrap();
+    assert!(String::from_utf8_lossy(&told.stdout).starts_with("9 rows written\n"), "{told:?}");
+    let quiet = run(&own, &[&arguments[..], &["--json"]].concat()).unwrap();
+    assert!(quiet.status.success(), "{}", String::from_utf8_lossy(&quiet.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&quiet.stdout).unwrap();
+    assert_eq!(summary["sessions"], 1);
 }
 
 #[test]

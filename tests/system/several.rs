@@ -65,7 +65,7 @@ fn stop_without_a_name_stops_all() {
     page.say("Rosie, go to the main office").unwrap();
     page.say("Bob, go to the reception").unwrap();
     page.wait("Bob's answer", |_, message| said_by(message, 1, "going to the reception")).unwrap();
-    page.say("stop!").unwrap();
+    page.say("stop it now!").unwrap();
     let mut stopped = [false; 2];
     page.wait("both to stop", |_, message| {
         for (body, stopped) in (0..).zip(&mut stopped) {

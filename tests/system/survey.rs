@@ -120,6 +120,31 @@ fn a_person_who_has_finished_says_so_on_the_page() {
 }
 
 #[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn what_was_filled_in_is_kept_when_a_person_puts_it_off() {
+    let browser = Browser::start().unwrap();
+    let scratch = Scratch::new("survey-later");
+    let file = scratch.write("after.toml", AFTER);
+    let play = Play::start(COHABIT, &["cold_soda", "--seed", "5", "--questionnaire", &file]).unwrap();
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    let button = "document.querySelector('#survey-open')";
+    tab.wait_until(&format!("window.cohabit?.frames > 0 && {button}.textContent === 'I have finished'")).unwrap();
+    tab.evaluate(&format!("window.confirm = () => true; {button}.click()")).unwrap();
+    let fill = "document.querySelector('#survey input[type=radio]').checked = true; \
+        document.querySelector('#survey textarea').value = 'Less talk.'";
+    tab.evaluate(fill).unwrap();
+    tab.evaluate("document.querySelector('#survey-later').click()").unwrap();
+    tab.wait_until("!document.querySelector('#survey').open").unwrap();
+    tab.evaluate(&format!("{button}.click()")).unwrap();
+    tab.wait_until("document.querySelector('#survey').open").unwrap();
+    let kept = "[document.querySelector('#survey input[type=radio]').checked, \
+        document.querySelector('#survey textarea').value]";
+    assert_eq!(tab.evaluate(kept).unwrap(), json!([true, "Less talk."]));
+    drop((tab, browser));
+    play.end().unwrap();
+}
+
+#[test]
 fn what_cannot_be_asked_is_said_before_anything_starts() {
     let scratch = Scratch::new("survey-refused");
     let wrong = scratch.write("wrong.toml", "title = \"T\"\n[[item]]\nask = \"How?\"\n");

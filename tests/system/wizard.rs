@@ -410,3 +410,25 @@ fn a_wizard_clicks_on_a_thing_in_the_picture_and_the_robot_does_what_is_chosen()
     assert_eq!(decision.clicked.as_deref(), Some("go_to"));
     assert!(decision.object.is_some() && decision.chosen_ms.is_some(), "{decision:?}");
 }
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn what_one_robot_proposes_is_shown_while_the_other_ones_answer_is_delayed() {
+    let robots = ["--body", "robot@BreakRoom", "--agent", "dialog", "--agent", "dialog@1", "--name", "0=Rosie"];
+    let seat = ["--name", "1=Bob", "--wizard", "yes", "--response-delay-ms", "60000"];
+    let (play, seat) = play(&[&robots[..], &seat[..]].concat());
+    let browser = Browser::start().unwrap();
+    let mut tab = sit_down(&browser, &seat);
+    let mut page = Page::open(play.authority()).unwrap();
+    page.say("Rosie, go to the main office").unwrap();
+    tab.wait_until("window.cohabit.proposal?.body === 0").unwrap();
+    press(&mut tab, "Enter");
+    tab.wait_until("window.cohabit.proposal?.is_decided").unwrap();
+    page.say("Bob, go to the reception").unwrap();
+    tab.wait_until("window.cohabit.proposal?.body === 1 && !window.cohabit.proposal.is_decided").unwrap();
+    drop(page);
+    let answers = "document.querySelectorAll('#chat .from-robot').length";
+    assert_eq!(tab.evaluate(answers).unwrap(), json!(0), "Rosie's answer is still to come");
+    drop((tab, browser));
+    play.end().unwrap();
+}

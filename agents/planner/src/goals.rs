@@ -42,7 +42,11 @@ impl Grounder<'_> {
     }
 
     fn meant(&self, pattern: &InstancePattern) -> Vec<Index> {
-        let is_one = |index: &Index| is_meant(pattern, &self.things[usize::from(*index)].names, &self.class(*index).id);
+        let class = pattern.class_in(self.catalog);
+        let is_one = |index: &Index| {
+            let thing = &self.things[usize::from(*index)];
+            class.map_or_else(|| is_meant(pattern, &thing.names, &self.class(*index).id), |class| thing.class == class)
+        };
         self.indices().filter(is_one).collect()
     }
 

@@ -315,3 +315,16 @@ def test_a_mission_has_robots_of_its_own() -> None:
     observations, _ = env.reset(seed=0)
     assert len(observations) == 2
     assert all(env.observation_space(agent).contains(one) for agent, one in observations.items())
+
+
+def test_a_dictionary_that_was_changed_is_another_mission() -> None:
+    mission = json.loads(builtin("make_cereal"))
+    env = cohabit.Env(mission, planes=())
+    envs = cohabit.VectorEnv(mission, 2, planes=())
+    env.reset(seed=0)
+    envs.reset(seed=0)
+    mission["goal_text"] = "Have breakfast"
+    _, info = env.reset(seed=0, options={"mission": mission})
+    _, infos = envs.reset(seed=0, options={"mission": mission})
+    assert [info["instruction"], *infos["instruction"]] == ["Have breakfast"] * 3
+    assert '"Have breakfast"' in env.office.world.made_of()[1], "the world has it too"

@@ -242,3 +242,16 @@ def test_a_body_has_tools() -> None:
     assert tools.call("fly", {}).startswith("Refused: there is no tool `fly`")
     assert tools.call("move", {"distance_m": "far"}) == "Refused: `distance_m` is 'far': a number from -10.0 to 10.0."
     assert "takes object" in tools.call("open", {})
+
+
+def test_what_was_played_is_kept_where_a_policy_fails(made: cohabit.Suite, tmp_path: Path) -> None:
+    def policy(observation: Any, infos: dict[str, Any]) -> Any:
+        if infos["mission"][0] == made[1].id:
+            raise RuntimeError("out of memory")
+        return np.zeros((1, 2), np.int64)
+
+    with pytest.raises(RuntimeError, match="out of memory"):
+        cohabit.evaluate(policy, made[:2], num_envs=1, record=tmp_path, planes=(), max_steps=1)
+    (line,) = (tmp_path / "episodes.jsonl.part").read_text().splitlines()
+    assert json.loads(line)["mission"] == made[0].id
+    assert not (tmp_path / "episodes.jsonl").exists()

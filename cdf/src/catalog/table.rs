@@ -208,6 +208,16 @@ pub enum TableError {
         /// The change.
         change: Change,
     },
+    /// A device has a work, and no press of it has it run.
+    #[error("{file}: no press of the device `{device}` begins its work `{work}`: write `press = [\"run it\"]`")]
+    NotBegun {
+        /// Which file.
+        file: String,
+        /// The first class of the device.
+        device: String,
+        /// The name of the work.
+        work: String,
+    },
     /// The work of a machine cannot change that: it has no hand, and presses nothing.
     #[error("{file}: the work `{work}` changes what no machine can: {change:?}; make it a rule or a press")]
     NotOfAWork {

@@ -10,7 +10,7 @@ use super::{
     reader::{GoalPlaces, Places, Reader, one_of},
 };
 use crate::{
-    catalog::{ClassId, ObjectClass},
+    catalog::{ClassId, ObjectClass, Property},
     room::RoomId,
 };
 
@@ -64,7 +64,7 @@ impl Reader<'_> {
         if let Some(room) = object.room {
             self.room_in_layout(&at.key("roomLocation").item(0), room);
         }
-        let Some(inside) = &object.inside else { return };
+        let Some(inside) = &object.inside else { return self.audit_room(object, at) };
         let at = at.key("location").item(0).key(inside);
         let outer = objects.iter().find(|other| other.instance == *inside);
         if let Some(outer) = outer.filter(|outer| outer.removed || outer.blacklisted) {
@@ -85,6 +85,18 @@ impl Reader<'_> {
             if let Some((message, remedy)) = misfit(class, receptacle, inside) {
                 self.warn(&at, message, remedy);
             }
+        }
+    }
+
+    /// What the layout has in another room than is said, and nobody carries there: it stays.
+    fn audit_room(&mut self, object: &ObjectRequest, at: &Pointer) {
+        let (Some(room), Some(placed)) = (object.room, self.placed_room(&object.instance)) else { return };
+        let class = self.class_id(&object.instance).map(|class| self.catalog.class(class));
+        let carried = class.is_some_and(|class| class.has(Property::Pickupable));
+        if room != placed && !carried && !object.removed && !object.blacklisted {
+            let [placed, room] = [placed, room].map(|room| room.name_in(self.catalog));
+            let message = format!("`{}` is in the {placed}, not in the {room}", object.instance);
+            self.warn(&at.key("roomLocation").item(0), message, Some("the layout counts".to_owned()));
         }
     }
 

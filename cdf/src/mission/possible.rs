@@ -147,7 +147,22 @@ impl Possibility<'_> {
     }
 
     fn never_flag(&self, of: &InstancePattern, flag: StateFlag) -> Option<String> {
-        self.lacks(of, property_of(flag)?)
+        match property_of(flag) {
+            Some(property) => self.lacks(of, property),
+            None => self.never_set(of, flag),
+        }
+    }
+
+    /// Why a thing never gets into a state that the table alone brings about, and is not in from the start.
+    fn never_set(&self, of: &InstancePattern, flag: StateFlag) -> Option<String> {
+        const OF_THE_TABLE: [StateFlag; 3] = [StateFlag::Wet, StateFlag::Creased, StateFlag::Folded];
+        let from_the_start =
+            |object: &ObjectRequest| of.matches(&object.instance) && object.flags.contains(&(flag, true));
+        if !OF_THE_TABLE.contains(&flag) || self.objects.iter().any(from_the_start) {
+            return None;
+        }
+        let class = self.class(of).filter(|class| !self.catalog.table().may_set(flag, class))?;
+        Some(format!("`{of}` never gets into this state: nothing gets a {} into it", class.name))
     }
 
     fn lacks(&self, of: &InstancePattern, property: Property) -> Option<String> {

@@ -188,6 +188,11 @@ fn what_is_wrong_is_named_with_its_file_its_place_and_what_would_be_right() {
         ("table/more.toml", "[[device]]\nclass = [\"Nothing_01\"]\n".to_owned(), &["`Nothing_01` is no class"]),
         (
             "table/more.toml",
+            "[[device]]\nclass = [\"Wrench_01\"]\nwork = \"degrease\"\npress = [\"flip it\"]\n".to_owned(),
+            &["first/table/more.toml: no press of the device `Wrench_01` begins its work `degrease`: ", "run it"],
+        ),
+        (
+            "table/more.toml",
             "[[rule]]\nname = \"oil\"\naction = \"clean\"\nneeds = [[\"it exists\", \"ActionExecutonError\", \"no\"]]\n"
                 .to_owned(),
             &["first/table/more.toml: `ActionExecutonError` is no status (did you mean `ActionExecutionError`?)"],

@@ -130,16 +130,30 @@ impl<'a> Ground<'a> {
 
     /// All objects that are meant: those of the room, if there are any.
     pub(crate) fn all(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<ObjectId>, Miss> {
+        let mut left = self.each(phrase, want)?;
+        keep_if_any(&mut left, |object| object.room == self.scene.robot.room);
+        let most = phrase.count.map_or(left.len(), usize::from);
+        Ok(left.iter().take(most).map(|object| object.id).collect())
+    }
+
+    /// All objects that the words mean most, wherever they are.
+    pub(crate) fn everywhere(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<ObjectId>, Miss> {
+        let left = self.each(phrase, want)?;
+        let weight = |object: &KnownObject| phrase.naming(object.class).unwrap_or(1.0);
+        let best = left.iter().map(|object| weight(object)).fold(0.0, f32::max);
+        Ok(left.iter().filter(|object| weight(object) > best - WORSE_NAME).map(|object| object.id).collect())
+    }
+
+    /// All that is as described, the nearest first.
+    fn each(&self, phrase: &Phrase, want: &Want<'_>) -> Result<Vec<&'a KnownObject>, Miss> {
         if phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_described() && !phrase.is_all {
             return Err(Miss::Unknown);
         }
         let Described { mut left, .. } = self.described(phrase, want)?;
-        keep_if_any(&mut left, |object| object.room == self.scene.robot.room);
         left.sort_by(|one, other| {
             self.scene.distance_m(one).total_cmp(&self.scene.distance_m(other)).then(one.id.cmp(&other.id))
         });
-        let most = phrase.count.map_or(left.len(), usize::from);
-        Ok(left.iter().take(most).map(|object| object.id).collect())
+        Ok(left)
     }
 
     /// Those of `candidates` that an answer such as `the red one` or `on the desk` means.

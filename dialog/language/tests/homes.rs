@@ -333,3 +333,67 @@ fn more_of_a_list_is_told_by_what_was_not_mentioned() {
         assert!(more.starts_with("= I see") && more != first, "{asked} {more}");
     }
 }
+
+#[test]
+fn what_is_asked_of_several_is_asked_of_each_of_them_wherever_it_is() {
+    let mut talk = Talk::new(&["plan House_Family LivingRoom"]);
+    for switch in talk.scene.objects.iter_mut().filter(|one| one.instance == "LightSwitch_01") {
+        switch.flags.set(cohabit_cdf::StateFlag::Toggled, switch.room.id() == "Kitchen");
+    }
+    let on = "= No, the light switch in the kitchen is not off.";
+    answers(&mut talk, &[("are all the lights off?", on), ("are the lights off?", on)]);
+    let plates = [
+        "plan House_Family Kitchen",
+        "add Dinner_Plate on Kitchen_Sink_Double",
+        "add Dinner_Plate on Kitchen_Island",
+        "Dinner_Plate dirty",
+    ];
+    let asked = [
+        ("is any plate dirty?", "= Yes: the"),
+        ("is any plate clean?", "= Yes: the"),
+        ("is any plate broken?", "= No, I"),
+    ];
+    answers(&mut Talk::new(&plates), &asked);
+    let cups = [&plates[..3], &["add Teacup on Kitchen_Island", "Teacup dirty"]].concat();
+    let they =
+        [("how many plates are there?", "= I know of 3 plates."), ("are they clean?", "= Yes, they are all clean.")];
+    answers(&mut Talk::new(&cups), &they);
+}
+
+#[test]
+fn what_it_did_to_several_is_told_of_each_of_them() {
+    let mut talk = Talk::new(KITCHEN);
+    talk.say_and_do("put the tomato on the dining table");
+    let both = "did you put the tomato and the chef knife on the dining table?";
+    answers(&mut talk, &[(both, "= No, I left out the chef's knife")]);
+    talk.say_and_do("put the chef knife on the dining table");
+    answers(
+        &mut talk,
+        &[(both, "= Yes, I did: the tomato"), ("did you wash the tomato and the chef knife?", "= No, not")],
+    );
+    let mut talk = Talk::new(CHILDREN);
+    talk.say_and_do("put the toy car away");
+    answers(&mut talk, &[("did you put the toy car and the teddy away?", "= No, I left out the teddy bear")]);
+}
+
+#[test]
+fn what_it_did_with_a_thing_is_all_that_it_did_with_it() {
+    let mut talk = Talk::new(KITCHEN);
+    talk.say_and_do("wash the plate");
+    let told = talk.say("what did you do with the plate?");
+    assert!(told.contains("picked up the dinner plate") && told.contains("washed it"), "{told}");
+    let mut talk = Talk::new(LAUNDRY);
+    talk.say_and_do("dry the shirt");
+    let told = talk.say("what did you do with the shirt?");
+    assert!(told.contains("put the shirt in the tumble dryer") && told.contains("turned on"), "{told}");
+}
+
+#[test]
+fn which_of_them_are_switched_on_is_told() {
+    let mut talk = Talk::new(&["plan House_Family LivingRoom"]);
+    for switch in talk.scene.objects.iter_mut().filter(|one| one.instance == "LightSwitch_01") {
+        switch.flags.set(cohabit_cdf::StateFlag::Toggled, switch.room.id() == "Kitchen");
+    }
+    let on = "= The light switch in the kitchen.";
+    answers(&mut talk, &[("which lights are on?", on), ("which lights are still on?", on)]);
+}

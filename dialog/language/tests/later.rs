@@ -411,3 +411,27 @@ fn who_wants_to_be_told_when_something_is_so_is_told() {
         assert_eq!(woken(&mut talk, 2.0).as_deref(), Some("= The kettle is hot."), "{said}");
     }
 }
+
+#[test]
+fn it_is_the_machine_that_is_done() {
+    let washes = ["plan House_Family UtilityRoom", "add Shirt in Washing_Machine", "Shirt wet", "Washing_Machine on"];
+    let told = "= I wait until it is done.";
+    let goes_on = "= I wait until it is done. Then I go on.";
+    for (said, waits, then) in [
+        ("tell me when it's done", told, "= It is done."),
+        ("wait until it is done", told, "= It is done."),
+        ("when it's done, take out the shirt", goes_on, "open Washing_Machine, take Shirt"),
+    ] {
+        let mut talk = Talk::new(&washes);
+        assert_eq!(talk.say("is the washing machine on?"), "= Yes, the washing machine is on.");
+        assert_eq!(talk.say("is it done?"), "= No, the washing machine is still on.");
+        assert_eq!(talk.say(said), waits, "{said}");
+        assert!(woken(&mut talk, 1.0).is_none(), "{said}");
+        let machine = talk.scene.objects.iter_mut().find(|object| object.instance == "Washing_Machine");
+        machine.expect("a washing machine").flags.set(cohabit_cdf::StateFlag::Toggled, false);
+        assert_eq!(woken(&mut talk, 2.0).as_deref(), Some(then), "{said}");
+    }
+    // What was asked for before is over by then.
+    assert_eq!(Talk::new(&[]).say("when that is done, open the fridge"), "open FridgeLower_02_1");
+    assert_eq!(Talk::new(&[]).say("is it done?"), "= Still to do: Pour milk into the bowl. Done so far: 1.");
+}

@@ -323,6 +323,13 @@ fn the_same_search_in_other_words_is_no_other_choice() {
     }
 }
 
+#[test]
+fn a_thing_that_is_in_something_unseen_is_looked_for_there() {
+    let mut robot = Robot::new(&[]);
+    let (_, said) = robot.say("pick up the red thing in the trophy case", 1);
+    assert!(said[0].contains("trophy case") && !said[0].contains("Do you mean"), "{said:?}");
+}
+
 /// What a rewriter makes of one utterance: the same with what was not seen yet, in three ways none of which is likely enough.
 fn three_ways(said: &str, _: &[(bool, String)], _: &str) -> Vec<(String, f32)> {
     let ways = [
@@ -441,6 +448,19 @@ fn a_question_is_answered_from_memory() {
     assert_eq!(said, ["? I have not seen any milk yet. Shall I look for it?"]);
     let (done, _) = robot.say("yes", 80);
     assert_eq!(done.last().unwrap(), "go MilkCarton_01_1", "{done:?}");
+}
+
+#[test]
+fn what_it_has_opened_it_has_looked_into() {
+    let mut robot = Robot::new(&[]);
+    robot.look(true);
+    let (_, said) = robot.say("what is in the microwave?", 1);
+    assert_eq!(said, ["? The microwave is closed. I have not looked into it yet. Shall I?"]);
+    robot.say("no", 1);
+    robot.say("open the microwave", 1);
+    robot.say("close the microwave", 1);
+    let (_, said) = robot.say("what is in the microwave?", 1);
+    assert_eq!(said, ["= I know of nothing in the microwave."]);
 }
 
 #[test]

@@ -63,6 +63,16 @@ fn what_is_said_again_is_not_asked_about_again() {
 }
 
 #[test]
+fn an_answer_may_come_after_a_remark_and_who_asks_back_chooses_nothing() {
+    let mut talk = talk();
+    talk.say("sing that plate a merry tune tonight");
+    assert!(talk.say("Ooh what a mouthful. The second one, love.").contains("toggle Toaster"));
+    talk.say("sing that plate a merry tune tonight");
+    let echo = talk.say("The plate? Open the fridge.");
+    assert!(!echo.contains("take FoodPlate_01"), "{echo}");
+}
+
+#[test]
 fn what_was_asked_beside_an_order_is_answered_though_the_order_is_asked_about() {
     let asked = talk().say("sing me a merry tune of fridges tonight");
     assert!(

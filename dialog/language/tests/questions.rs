@@ -173,6 +173,13 @@ fn what_was_asked_for_is_called_so() {
 }
 
 #[test]
+fn what_it_is_asked_to_have_is_what_was_spoken_of() {
+    check(&["pick up the banana", "do you have it?"], "Yes, I am holding the banana.");
+    check(&["pick up the banana", "where is the hammer?", "do you have it?"], "No, I am holding the banana.");
+    check(&["pick up the banana", "where is the hammer?", "are you holding it?"], "No, I am holding the banana.");
+}
+
+#[test]
 fn what_a_request_takes_in_hand_is_there_for_the_next() {
     let done = Talk::new(&[]).say("fill the yellow mug with water and pick up the yellow mug");
     assert!(done.starts_with("take CoffeeMug_Yellow_1") && !done.contains("put"), "{done}");

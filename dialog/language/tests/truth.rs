@@ -183,6 +183,16 @@ fn what_is_said_of_all_is_so_of_all() {
 }
 
 #[test]
+fn what_there_is_in_no_such_state_is_not_said_to_be_there() {
+    let dirty = "I know of no clean plate: the plate is on the round table.";
+    check(&[], "is there a clean plate?", &format!("= No, {dirty}"));
+    check(&[], "is there a dirty plate?", "= Yes, the plate is on the round table.");
+    check(&[], "where is the clean plate?", &format!("= {dirty}"));
+    check(&[], "if there is a clean plate, open the fridge", &format!("= {dirty} So I leave that."));
+    check(&[], "if there is a dirty plate, open the fridge", "open FridgeLower_02_1");
+}
+
+#[test]
 fn nobody_is_nobody() {
     check(&[], "if nobody is here, open the fridge", "open FridgeLower_02_1");
     check(&[], "if there is somebody here, open the fridge", "= I see nobody here. So I leave that.");

@@ -105,7 +105,7 @@ pub struct Memory {
     held: Option<Box<Held>>,
     /// What was said since, and is not understood yet.
     waiting: VecDeque<Words>,
-    /// Since when nothing is held back that was before, ns of the monotonic clock.
+    /// Since when nothing is held back that was before, and no interpreter is asked, ns of the monotonic clock.
     free_since_nanos: u64,
     /// What its face shows.
     expression: FacialExpression,

@@ -29,6 +29,8 @@ const NEWS_KEPT: usize = 512;
 const PEER: &str = "page";
 /// How long an answer to a claim is waited for.
 const CLAIM_PATIENCE: Duration = Duration::from_secs(5);
+/// How the simulator ends the refusal of a claim of a body that somebody else commands.
+const TAKEN: &str = "it has to be taken over";
 /// How long a deed may take before the keys move the body again.
 const DEED_PATIENCE: Duration = Duration::from_secs(8);
 
@@ -295,7 +297,7 @@ impl Driver {
                 self.ask(true)?;
                 return Ok(None);
             }
-            return Ok(Some(Told::Over(addressed(&news.text))));
+            return Ok(Some(Told::Over(self.refused(&news.text))));
         }
         if self.acting.is_some_and(|(command, _)| command == news.command) {
             self.acting = None;
@@ -304,6 +306,15 @@ impl Driver {
             return Ok(Some(Told::Acted(success, text)));
         }
         Ok(None)
+    }
+
+    /// Why the body is not theirs, for people: where a mind of its own keeps it, also what lets people take it over.
+    fn refused(&self, text: &str) -> String {
+        if text.ends_with(TAKEN) {
+            let remedy = "in a session with `--drive all` people can take it over";
+            return format!("A program of the session moves {} and does not hand it over: {remedy}.", self.name);
+        }
+        addressed(text)
     }
 
     /// The body changed hands.
@@ -448,6 +459,17 @@ mod tests {
             let told = driver.note(&outcome(again.command, Status::InvalidCommand)).unwrap();
             assert!(matches!(told, Some(Told::Over(_))), "{told:?}");
         }
+    }
+
+    #[test]
+    fn who_may_not_take_a_body_from_a_mind_is_told_what_would_let_them() {
+        let (drivers, mut heard) = session(Drivable::People);
+        let mut driver = Driver::claim(&drivers, 1).unwrap();
+        let claim = hear(&mut *heard).unwrap();
+        let text = "the pedestrians commands body 1: it has to be taken over".to_owned();
+        let refused = News { text, ..outcome(claim.command, Status::InvalidCommand) };
+        let Some(Told::Over(why)) = driver.note(&refused).unwrap() else { panic!("it is refused") };
+        assert!(why.contains("person 1") && why.contains("`--drive all`") && !why.contains("body 1"), "{why}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use cohabit_bus::{
     message::{BodyRecord, StateView},
 };
 use cohabit_cdf::{BodyId, Catalog, Layout, ObjectId};
-use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster};
+use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster, find_stop};
 
 use crate::{
     conversation::{Conversation, Memory, Thought},
@@ -195,7 +195,7 @@ impl Robots {
     }
 
     /// Whom a visitor speaks to, by name, or else by what came before and by who is near, and what is said to them. Who
-    /// calls nobody and says no more than `stop` says it to all.
+    /// calls nobody and says no more than `stop`, in whatever words, says it to all.
     pub fn addressed(
         &mut self,
         text: &str,
@@ -268,7 +268,12 @@ impl Robots {
     }
 }
 
+/// Whether somebody says stop, and asks for nothing after it: `stop it now`. All that was said before is taken back by it.
 fn is_stop(text: &str) -> bool {
+    find_stop(text).is_some_and(|stop| stop.is_plain && stop.rest.is_empty()) || is_stop_word_by_word(text)
+}
+
+fn is_stop_word_by_word(text: &str) -> bool {
     let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
     let mut stops = false;
     for word in words.map(str::to_lowercase) {
@@ -279,4 +284,22 @@ fn is_stop(text: &str) -> bool {
         }
     }
     stops
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_says_stop_in_whatever_words_says_it_to_all() {
+        for text in ["stop", "Stop! Stop!", "stop it", "stop it now!", "please stop everything", "halt", "freeze"] {
+            assert!(is_stop(text), "{text}");
+        }
+        for text in ["STOP what you're doing", "freeze now", "halt right there please"] {
+            assert!(is_stop(text), "{text}");
+        }
+        for text in ["stop, and go to the lab", "stop by the kitchen", "stop the laser", "don't stop", ""] {
+            assert!(!is_stop(text), "{text}");
+        }
+    }
 }

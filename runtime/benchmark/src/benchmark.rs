@@ -3,7 +3,9 @@
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use cohabit_cdf::Catalog;
-use cohabit_generate::{GenerateError, Generated, Order, Part, Parted, Spec, SpecError, generate, part, world_of};
+use cohabit_generate::{
+    GenerateError, Generated, GivenUp, Order, Part, Parted, Spec, SpecError, generate, part, world_of,
+};
 use cohabit_world::World;
 use serde::Deserialize;
 
@@ -147,8 +149,12 @@ impl Benchmark {
                     made.push(mission);
                     (making.made)(made.len(), written.count);
                 };
-                generate(&spec, catalog, order, &mut take)
+                let given_up = generate(&spec, catalog, order, &mut take)
                     .map_err(|source| BenchmarkError::Generate { file: file.to_owned(), source })?;
+                // Whoever named a digest has looked at the missions.
+                if written.digest.is_none() {
+                    check_types(&given_up, &made).map_err(wrong)?;
+                }
                 let missions = parted(made, written.share, written.seed, catalog).map_err(wrong)?;
                 let found = digest(&missions);
                 if let Some(expected) = written.digest.as_ref().filter(|expected| **expected != found) {
@@ -190,9 +196,22 @@ fn kept(folder: &Path, text: &str, written: &Written, catalog: &Catalog, build: 
     Kept::of(folder, &[text, &packs.join("\n"), build])
 }
 
+/// Whether each type that was tried has missions; which one has none, and why, in words.
+fn check_types(given_up: &BTreeMap<String, GivenUp>, made: &[Generated]) -> Result<(), String> {
+    let has_none = |(kind, _): &(&String, &GivenUp)| !made.iter().any(|mission| mission.kind == **kind);
+    given_up.iter().find(has_none).map_or(Ok(()), |(kind, GivenUp { count, reason })| {
+        Err(format!(
+            "the type `{kind}` has no mission: {count} were given up, the last because {reason}; mend it, leave it out, or \
+             raise `count`"
+        ))
+    })
+}
+
 /// The missions with what they are for, and what is said in them; why one cannot be laid out, in words.
 fn parted(made: Vec<Generated>, share: f64, seed: u64, catalog: &Arc<Catalog>) -> Result<Vec<Mission>, String> {
-    let facets: Vec<_> = made.iter().map(Generated::facets).collect();
+    // By the things that were drawn alone: so the first benchmark was parted, and its digest names what came of it.
+    let facets = made.iter().map(|one| cohabit_generate::Facets { things: one.things.clone(), ..one.facets() });
+    let facets: Vec<_> = facets.collect();
     let Parted { parts, .. } = part(&facets, share, seed);
     let splits = splits(&parts);
     let missions = made.into_iter().zip(parts.into_iter().zip(splits));
@@ -264,11 +283,13 @@ mod tests {
         let catalog = Arc::new(Catalog::builtin());
         let caps = "[caps]\nactions = 50\nfailed = 10\n";
         let kind = "[[missions.type]]\nname = \"one\"\nvars = [{ name = \"a\", class = [\"Apple\"] }]\ngoals = [\"a isPickedUp=true\"]\n";
+        let sparks = kind.replace("one", "sparks").replace("isPickedUp", "isSparking");
         let head = "version = 9\nseed = 1\ncount = 2\nshare = 0.1\n";
         for (text, expected) in [
             ("version = 1".to_owned(), "missing field"),
             (format!("{}{caps}{kind}", head.replace("0.1", "0.9")), "share = 0.9"),
             (format!("{head}{caps}{}", kind.replace("Apple", "Nix")), "`Nix`"),
+            (format!("{head}{caps}{kind}{sparks}"), "type `sparks` has no mission"),
             (format!("{head}digest = \"00\"\n{caps}{kind}"), "the digest"),
         ] {
             let error = Benchmark::parse("b.toml", &text, &catalog, Making::by(1)).unwrap_err().to_string();

@@ -91,9 +91,28 @@ fn overall(entries: &[&Entry]) -> Grid {
         title: "Submissions".to_owned(),
         head: words(&["agent", "questions", "test MSR %", "NRA", "validation MSR %", "NRA", "verified"]),
         rows: rows.collect(),
-        note: "MSR: mission success rate, with its 95 % interval (Wilson). NRA: number of robot actions, mean of all missions."
-            .to_owned(),
+        note: format!(
+            "MSR: mission success rate, with its 95 % interval (Wilson). NRA: number of robot actions, mean of all missions.{}",
+            apart(entries)
+        ),
     }
+}
+
+/// That submissions are of several benchmarks, and how to tell which, if they are: a version alone does not tell them apart.
+fn apart(entries: &[&Entry]) -> String {
+    let mut files = BTreeMap::<&str, Vec<&str>>::new();
+    for entry in entries {
+        files.entry(&entry.header.missions).or_default().push(&entry.file);
+    }
+    if files.len() < 2 {
+        return String::new();
+    }
+    let groups: Vec<String> = files.values().map(|files| files.join(", ")).collect();
+    format!(
+        " These are of {} benchmarks with other missions each, and cannot be compared: {}. Put those of each in a folder of their own.",
+        groups.len(),
+        groups.join("; ")
+    )
 }
 
 fn by(title: &str, entries: &[&Entry], split: Split, groups: fn(&SplitTotals) -> &BTreeMap<String, Tally>) -> Grid {

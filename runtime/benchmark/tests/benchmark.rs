@@ -262,3 +262,16 @@ fn submissions_are_laid_beside_the_paper() {
     assert!(page.contains("toggleDevice") && page.contains("34.20") && page.contains("cannot be compared"), "{page}");
     assert!(!page.contains("<script"), "{page}");
 }
+
+#[test]
+fn a_table_says_that_submissions_are_of_several_benchmarks() {
+    let header = header(&small());
+    let entry = |file: &str, missions: &str| {
+        let header = Header { missions: missions.to_owned(), ..header.clone() };
+        Entry { file: file.to_owned(), header, check: Check::NotVerified }
+    };
+    let note = |entries: &[Entry]| grids(entries)[0].note.clone();
+    assert!(!note(&[entry("a", "1"), entry("b", "1")]).contains("benchmarks"));
+    let told = note(&[entry("a", "1"), entry("b", "1"), entry("c", "2")]);
+    assert!(told.contains("of 2 benchmarks") && told.contains("a, b; c"), "{told}");
+}

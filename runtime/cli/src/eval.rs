@@ -64,7 +64,7 @@ pub struct Eval {
     /// plain requests
     #[arg(long, value_name = "EFFORT", default_value_t)]
     understanding: Effort,
-    /// Write a session log of each mission into this folder
+    /// Write a session log of each mission into this folder, which must not have logs of them yet
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
     /// Write all results to this file, as JSON
@@ -144,6 +144,7 @@ impl Eval {
         let tasks = self.tasks()?;
         if let Some(folder) = &self.record {
             std::fs::create_dir_all(folder).map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
+            self.check_logs(&tasks)?;
         }
         // Before an hour of work, not after it.
         let out = self.report.as_ref().map(|path| create(path)).transpose()?;
@@ -170,6 +171,19 @@ impl Eval {
             }
         }
         Ok(tasks)
+    }
+
+    /// No log is written over: what the folder has of these missions is said before they are played, and not by worker after worker
+    /// that ends of it.
+    fn check_logs(&self, tasks: &[Task]) -> anyhow::Result<()> {
+        let settings = self.settings();
+        match tasks.iter().filter_map(|task| settings.log(&task.id)).find(|path| path.exists()) {
+            Some(path) => Err(bad_input(format!(
+                "{}: there is a log of this mission already; name another folder by `--record`, or remove it",
+                path.display()
+            ))),
+            None => Ok(()),
+        }
     }
 
     /// Where the missions are from, in a report.

@@ -1,6 +1,7 @@
 //! `cohabit export`: session logs as tables, and what they say about conditions.
 
 use std::{
+    collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
@@ -12,7 +13,7 @@ use crate::{
     failure::bad_input,
     movement::with_movement,
     rerun,
-    study::without_practice,
+    study::{is_left_out, is_of_practice, participants_of},
     terminal::{shown, shown_json, shown_lines},
     world::WorldPacks,
 };
@@ -21,7 +22,7 @@ use crate::{
 /// table tells how robots moved around them.
 #[derive(clap::Args)]
 pub struct Export {
-    /// Session logs, or folders of them
+    /// Session logs, or folders of them; of a study's folder of logs, those of participants whom the experimenter excluded are left out
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
     /// The folder to write tables into
@@ -64,11 +65,11 @@ impl Export {
         let logs = logs(&self.logs, self.practice)?;
         let world = self.packs.read()?;
         if matches!(self.format, Format::Parquet) && !self.packs.is_empty() {
-            let remedy = "leave `--world` out, or write CSV";
+            let remedy = "leave `--format` out, and write CSV";
             return Err(bad_input(format!("`--format parquet` writes no sessions of world packs yet: {remedy}")));
         }
         if let (Some(folder), Format::Parquet) = (&self.out, self.format) {
-            rerun::tables(&logs, folder)?;
+            rerun::tables(&logs, folder, self.json)?;
             if !self.summary {
                 return Ok(());
             }
@@ -126,7 +127,8 @@ fn write_plots(played: &[Played], by: &[String], folder: &Path, quietly: bool) -
     Ok(())
 }
 
-/// The logs themselves, and those in folders, in the order of their names; of folders of studies without those of practice.
+/// The logs themselves, and those in folders, in the order of their names; of folders of studies without those of practice and of
+/// those who were excluded.
 fn logs(paths: &[PathBuf], with_practice: bool) -> anyhow::Result<Vec<PathBuf>> {
     let mut all = Vec::new();
     for path in paths {
@@ -142,18 +144,27 @@ fn logs(paths: &[PathBuf], with_practice: bool) -> anyhow::Result<Vec<PathBuf>> 
             return Err(bad_input(format!("{}: there are no session logs (*.mcap) in it", path.display())));
         }
         own.sort();
+        let progress = participants_of(path)?;
         if !with_practice {
-            let count = own.len();
-            own = without_practice(path, own)?;
-            if own.len() < count {
-                let left_out = count - own.len();
-                eprintln!(
-                    "cohabit: {left_out} of {count} sessions in {} are for practice, and left out; --practice keeps them",
-                    shown(path.display())
-                );
-            }
+            let why = "are for practice, and left out; --practice keeps them";
+            leave_out(path, &mut own, why, |log| is_of_practice(log, &progress));
         }
+        let why = "are of participants who were excluded, and left out; name the logs themselves to keep them";
+        leave_out(path, &mut own, why, |log| is_left_out(log, &progress));
         all.append(&mut own);
     }
+    // Who names a log and the folder that it is in means one session.
+    let mut known = BTreeSet::new();
+    all.retain(|path| known.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
     Ok(all)
+}
+
+/// Takes some of a folder's logs out, and says how many, if there are any.
+fn leave_out(folder: &Path, logs: &mut Vec<PathBuf>, why: &str, is_it: impl Fn(&Path) -> bool) {
+    let count = logs.len();
+    logs.retain(|log| !is_it(log));
+    let left_out = count - logs.len();
+    if left_out > 0 {
+        eprintln!("cohabit: {left_out} of {count} sessions in {} {why}", shown(folder.display()));
+    }
 }

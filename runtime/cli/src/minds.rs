@@ -158,7 +158,7 @@ impl MindRequest {
         let kinds: Vec<BodyKind> = robots.chain(plan.bodies.iter().map(|body| body.kind)).collect();
         let mut taken = BTreeMap::<u32, &Self>::new();
         for request in requests {
-            for body in request.bodies(&kinds, &plan.catalog)? {
+            for body in request.bodies(&kinds, plan)? {
                 if body as usize >= kinds.len() {
                     let last = kinds.len() - 1;
                     let remedy = format!("the session has bodies 0 to {last}; `--body robot` adds one");
@@ -177,12 +177,12 @@ impl MindRequest {
     }
 
     /// The bodies that it commands in a session of bodies of these kinds.
-    fn bodies(&self, kinds: &[BodyKind], catalog: &Catalog) -> anyhow::Result<Vec<u32>> {
+    fn bodies(&self, kinds: &[BodyKind], plan: &SessionPlan) -> anyhow::Result<Vec<u32>> {
         if self.kind != MindKind::Pedestrian {
             return Ok(vec![self.body]);
         }
-        let schedule = read_schedule(self.script.as_deref().map(Path::new), catalog)?;
-        match fault(&schedule, kinds) {
+        let schedule = read_schedule(self.script.as_deref().map(Path::new), &plan.catalog)?;
+        match fault(&schedule, kinds, &plan.layout) {
             Some(fault) => Err(bad_input(format!("`--agent {self}`: {fault}"))),
             None => Ok(schedule.people().collect()),
         }

@@ -104,7 +104,7 @@ impl Play {
         let robots: Vec<u32> = self.minds.iter().filter_map(MindRequest::spoken_to).collect();
         self.check_frames(&plan)?;
         self.rendering.check()?;
-        self.watching.check()?;
+        self.watching.check(&self.packs)?;
         let questionnaires = self.listening.questionnaires()?;
         let page_texts = self.listening.language.texts()?;
         let Listening { tls, listen, port, .. } = &self.listening;

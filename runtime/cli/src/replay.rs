@@ -61,9 +61,12 @@ pub struct Replay {
 impl Replay {
     /// Replays; fails if a tick differs.
     pub fn run(&self) -> anyhow::Result<()> {
+        let named = self.rerun.iter().flatten().map(PathBuf::as_path);
+        named.chain(self.film.video()).try_for_each(rerun::ensure_no_log)?;
         if let Some(out) = &self.rerun {
             if !self.packs.is_empty() {
-                return Err(bad_input("`--rerun` cannot show a session of a world pack yet: leave `--world` out"));
+                let remedy = "`--page`, `--video` and `--frames` can; one without packs needs no `--world`";
+                return Err(bad_input(format!("`--rerun` cannot show a session of a world pack yet: {remedy}")));
             }
             let out = out.clone().unwrap_or_else(|| self.log.with_extension("rrd"));
             return rerun::replay(&self.log, &out, self.film.rate(), &self.planes);

@@ -5,11 +5,12 @@ use std::{
     ffi::OsStr,
     net::SocketAddr,
     path::{Path, PathBuf},
-    process::{Child, Command},
+    process::{Child, Command, Stdio},
     time::{Duration, Instant},
 };
 
 use anyhow::Context as _;
+use cohabit_record::Log;
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::{failure::bad_input, terminal::shown};
@@ -37,24 +38,54 @@ impl Compare {
         let name = |log: &Path| log.file_stem().unwrap_or(log.as_os_str()).to_string_lossy().into_owned();
         let beside = || PathBuf::from(format!("{}+{}.rrd", name(&self.left), name(&self.right)));
         let out = self.out.clone().unwrap_or_else(beside);
+        ensure_no_log(&out)?;
         let arguments = [OsStr::new("compare"), self.left.as_os_str(), self.right.as_os_str()];
-        run(command()?.args(arguments).arg("--out").arg(&out))?;
+        let mut program = command()?;
+        [&self.left, &self.right].into_iter().try_for_each(|log| ensure_built_in(log))?;
+        run(program.args(arguments).arg("--out").arg(&out))?;
         tell_how_to_see(&out);
         Ok(())
     }
 }
 
+/// What is written anew is no session log: nobody can record that again, and whoever names one there has mixed up two arguments.
+pub fn ensure_no_log(out: &Path) -> anyhow::Result<()> {
+    if !Log::is_at(out) {
+        return Ok(());
+    }
+    let out = out.display();
+    let remedy = "name another file for what is made, and the log to be read first, before the options";
+    Err(bad_input(format!("{out}: this is a session log, and would be overwritten: {remedy}")))
+}
+
 /// Makes a recording of a session's log, of so many pictures a second that show these planes.
 pub fn replay(log: &Path, out: &Path, rate: f32, planes: &str) -> anyhow::Result<()> {
     let arguments = [format!("--rate={rate}"), format!("--planes={planes}")];
-    run(command()?.arg("replay").arg(log).arg("--out").arg(out).args(arguments))?;
+    let mut program = command()?;
+    ensure_built_in(log)?;
+    run(program.arg("replay").arg(log).arg("--out").arg(out).args(arguments))?;
     tell_how_to_see(out);
     Ok(())
 }
 
-/// Writes logs as Parquet tables.
-pub fn tables(logs: &[PathBuf], out: &Path) -> anyhow::Result<()> {
-    run(command()?.arg("tables").args(logs).arg("--out").arg(out))
+/// The program knows what is built in alone, and would ask for the pack of a session that has one.
+fn ensure_built_in(log: &Path) -> anyhow::Result<()> {
+    let packs = Log::open(log).map_err(bad_input)?.session.packs;
+    let Some(pack) = packs.first() else { return Ok(()) };
+    let (log, name) = (log.display(), &pack.name);
+    Err(bad_input(format!(
+        "{log}: rerun cannot show a session of a world pack yet, and this is one of `{name}`: `cohabit replay --page`, with its `--world`, \
+         plays it"
+    )))
+}
+
+/// Writes logs as Parquet tables; says so, unless what is printed is for programs.
+pub fn tables(logs: &[PathBuf], out: &Path, quietly: bool) -> anyhow::Result<()> {
+    let mut program = command()?;
+    if quietly {
+        program.stdout(Stdio::null());
+    }
+    run(program.arg("tables").args(logs).arg("--out").arg(out))
 }
 
 /// Whether what needs rerun can be started at all.
@@ -113,4 +144,28 @@ fn run(command: &mut Command) -> anyhow::Result<()> {
 
 fn tell_how_to_see(recording: &Path) {
     println!("See it with: rerun {}", shown(recording.display()));
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use cohabit_record::LogWriter;
+    use cohabit_tests::Scratch;
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn of_a_session_of_a_world_pack_it_is_said_that_it_cannot_be_shown() {
+        let scratch = Scratch::new("rerun-pack");
+        for (name, packs) in [("own", json!([])), ("tea", json!([{"name": "homes", "version": "1", "digest": "ab"}]))] {
+            let path = PathBuf::from(scratch.path(&format!("{name}.mcap")));
+            let entry = json!({"format": 3, "program": "0", "session": "s", "mission_file": "m", "mission_text": "",
+                "seed": 1, "packs": packs});
+            LogWriter::create(&path, &serde_json::from_value(entry).unwrap(), 1).unwrap().finish().unwrap();
+            let said = ensure_built_in(&path).map_err(|error| error.to_string());
+            assert_eq!(said.is_ok(), name == "own", "{said:?}");
+            assert!(said.err().is_none_or(|text| text.contains("tea.mcap") && text.contains("--page")));
+        }
+    }
 }

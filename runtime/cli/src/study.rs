@@ -36,7 +36,7 @@ use crate::{
     terminal::{print, shown},
     world::WorldPacks,
 };
-pub use data::without_practice;
+pub use data::{is_left_out, is_of_practice, participants_of};
 use plan::Plan;
 use ports::{PortRange, Ports};
 use program::ThisProgram;

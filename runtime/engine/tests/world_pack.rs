@@ -7,7 +7,9 @@ mod twenty_rooms;
 use std::{collections::BTreeSet, sync::Arc};
 
 use cohabit_bus::message::Thing;
-use cohabit_cdf::{Action, BodyId, GoToTarget, PackFile, RoomId, Verb, WorldData, WorldPack, world_pack::template};
+use cohabit_cdf::{
+    Action, BodyId, Fluid, GoToTarget, PackFile, RoomId, Verb, WorldData, WorldPack, world_pack::template,
+};
 use cohabit_engine::{SessionPlan, furnishings, report};
 use cohabit_render::{
     Camera, CpuRenderer, Lens, MeshLibrary, Planes, Renderer as _, RoomSurface, Scene, minimap, room_surface_id,
@@ -92,6 +94,26 @@ fn what_gets_too_heavy_to_be_pushed_stands_fast_before_a_snapshot_as_after_it() 
     }
     assert_eq!(again.differences(&world), Vec::<String>::new());
     assert_eq!(world.object(wheelchair).unwrap().position_m, before);
+}
+
+#[test]
+fn of_two_basins_at_hand_it_is_the_one_that_runs() {
+    let homes = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
+    let text = r#"{"scene": {"layoutOverride": "Flat_One_Bed", "roomLocation": ["Bathroom"], "required_objects": [
+        {"name": "Tumbler_1", "location": [{"Washbasin_10000": "in"}]}]}, "task_goals": []}"#;
+    let mut world = SessionPlan::new("fill.json", text, Arc::clone(homes.catalog()), 1).unwrap().build().unwrap();
+    let [tumbler, basin, bathtub] = ["Tumbler_1", "Washbasin_10000", "Bathtub_10000"].map(|id| world.find(id).unwrap());
+    let filling = [
+        Action::GoTo { target: GoToTarget::Object(basin) },
+        Action::PickUp { object: tumbler },
+        Action::Interact { verb: Verb::Toggle, object: basin },
+        Action::Interact { verb: Verb::Fill, object: tumbler },
+    ];
+    for (command, action) in (1..).zip(filling) {
+        carry_out(&mut world, command, action);
+    }
+    assert_eq!(world.object(tumbler).unwrap().fluid, Fluid::Water);
+    assert_eq!(world.object(bathtub).unwrap().fluid, Fluid::None);
 }
 
 fn plan_of_twenty() -> SessionPlan {

@@ -70,6 +70,22 @@ pub fn read(text: &str) -> Result<Vec<Task>, serde_json::Error> {
     Ok(tasks)
 }
 
+/// A task for each mission, by its name: for who plays it from its goals alone, whatever people say in it.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn missions(text: &str) -> Result<Vec<Task>, serde_json::Error> {
+    let sessions: BTreeMap<String, Session> = serde_json::from_str(text)?;
+    let task = |(id, session): (String, Session)| Task {
+        id,
+        family: None,
+        cdf: session.cdf.to_string(),
+        preparation: Vec::new(),
+        script: Vec::new(),
+    };
+    Ok(sessions.into_iter().map(task).collect())
+}
+
 impl Annotation {
     fn lines(self) -> Vec<Line> {
         let line = |instruction: Instruction| {
@@ -78,5 +94,22 @@ impl Annotation {
             Line::Utterance { text: instruction.instruction, answers }
         };
         self.instructions.into_iter().map(line).collect()
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mission_for_which_several_people_have_words_is_one_mission() {
+        let said = r#"[{"instructions": [{"instruction": "go"}]}, {"instructions": [{"instruction": "walk"}]}]"#;
+        let text = format!(
+            r#"{{"a": {{"CDF": {{}}, "human_annotations": {said}, "actions": [{{"type": "Dialog"}}]}}, "b": {{"CDF": {{}}}}}}"#
+        );
+        let ids = |tasks: Vec<Task>| tasks.into_iter().map(|task| task.id).collect::<Vec<_>>();
+        assert_eq!(ids(read(&text).unwrap()), ["a#human1", "a#human2", "a#expert"]);
+        assert_eq!(ids(missions(&text).unwrap()), ["a", "b"]);
     }
 }

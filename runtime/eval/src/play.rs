@@ -63,7 +63,8 @@ impl Settings {
     }
 
     /// The session log of a task, if one is wanted.
-    pub(crate) fn log(&self, id: &str) -> Option<PathBuf> {
+    #[must_use]
+    pub fn log(&self, id: &str) -> Option<PathBuf> {
         self.record.as_ref().map(|folder| folder.join(format!("{}.mcap", file_name(id))))
     }
 

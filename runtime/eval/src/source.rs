@@ -68,6 +68,8 @@ struct MissionLine {
     #[serde(default)]
     preparation_utterances: Vec<String>,
     utterances: Option<Vec<String>>,
+    /// What a person answers who is asked about each of these, in their order; nobody answers, if it is absent.
+    answers: Option<Vec<String>>,
     cdf: Value,
 }
 
@@ -91,7 +93,7 @@ pub fn read_tasks(path: &Path, script: Option<&Path>) -> Result<Vec<Task>, Sourc
 }
 
 /// The same without what is said in them, for who plays them from their goals alone: missions need neither scripts nor
-/// utterances.
+/// utterances, and one for which several people have words is one task.
 ///
 /// # Errors
 /// [`SourceError`].
@@ -111,7 +113,11 @@ fn read_with(path: &Path, script: Scripts<'_>) -> Result<Vec<Task>, SourceError>
         let text = read(path)?;
         match serde_json::from_str::<Value>(&text) {
             Ok(value) if value.get("scene").is_some() || !value.is_object() => vec![with_script(path, script)?],
-            Ok(_) => dataset::read(&text).map_err(|error| at_line(path, error.line(), &error))?,
+            Ok(_) => match script {
+                Scripts::Needed(_) => dataset::read(&text),
+                Scripts::Ignored => dataset::missions(&text),
+            }
+            .map_err(|error| at_line(path, error.line(), &error))?,
             Err(error) => return Err(at_line(path, error.line(), &error)),
         }
     };
@@ -141,7 +147,9 @@ fn lines(path: &Path, text: &str, scripts: Scripts<'_>) -> Result<Vec<Task>, Sou
             let said = |texts: &[String]| texts.iter().map(|text| Line::utterance(text)).collect();
             let script = match (&read.utterances, scripts) {
                 (_, Scripts::Ignored) => Vec::new(),
-                (Some(utterances), Scripts::Needed(_)) => said(utterances),
+                (Some(utterances), Scripts::Needed(_)) => {
+                    spoken(utterances, read.answers.as_deref()).map_err(|reason| at_line(path, number, &reason))?
+                }
                 (None, Scripts::Needed(_)) => {
                     return Err(at_line(path, number, &"nothing says what to do in it: it has no \"utterances\""));
                 }
@@ -155,6 +163,16 @@ fn lines(path: &Path, text: &str, scripts: Scripts<'_>) -> Result<Vec<Task>, Sou
             })
         })
         .collect()
+}
+
+/// What is said, each with what a person answers who is asked about it; what is wrong with that, in words.
+fn spoken(utterances: &[String], answers: Option<&[String]>) -> Result<Vec<Line>, String> {
+    let Some(answers) = answers else { return Ok(utterances.iter().map(|text| Line::utterance(text)).collect()) };
+    if answers.len() != utterances.len() {
+        let (answers, utterances) = (answers.len(), utterances.len());
+        return Err(format!("{answers} \"answers\" for {utterances} \"utterances\": one for each"));
+    }
+    Ok(utterances.iter().zip(answers).map(|(text, answer)| Line::answered(text, answer)).collect())
 }
 
 /// The mission files of a folder, by name.
@@ -196,6 +214,18 @@ mod tests {
     use std::fs;
 
     use super::*;
+
+    #[test]
+    fn a_line_has_what_its_person_answers() {
+        let line =
+            |answers: &str| format!("{{\"id\": \"a\", \"utterances\": [\"take the apple\"], {answers}\"cdf\": {{}}}}");
+        let read = |answers: &str| lines(Path::new("a.jsonl"), &line(answers), Scripts::Needed(None));
+        let script = read("\"answers\": [\"the red one\"], ").unwrap().remove(0).script;
+        assert_eq!(script, [Line::answered("take the apple", "the red one")]);
+        assert_eq!(read("").unwrap().remove(0).script, [Line::utterance("take the apple")]);
+        let error = read("\"answers\": [], ").unwrap_err().to_string();
+        assert_eq!(error, "a.jsonl:1: 0 \"answers\" for 1 \"utterances\": one for each");
+    }
 
     #[test]
     fn a_script_that_is_named_counts_for_a_mission_and_in_a_folder_for_those_without_one() {

@@ -5,6 +5,9 @@ use serde_json::{Value, json};
 
 use crate::{meaning::Meaning, simulated::expert};
 
+/// Questions about one thing that a person answers.
+const MOST_ANSWERS: usize = 2;
+
 /// A mission, and its script.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Task {
@@ -65,6 +68,13 @@ impl Line {
     #[must_use]
     pub fn utterance(text: &str) -> Self {
         Self::Utterance { text: text.to_owned(), answers: Vec::new() }
+    }
+
+    /// Something said by a person who answers the same, whatever is asked about it.
+    #[must_use]
+    pub fn answered(text: &str, answer: &str) -> Self {
+        let answer = Answer { question: String::new(), text: answer.to_owned() };
+        Self::Utterance { text: text.to_owned(), answers: vec![answer; MOST_ANSWERS] }
     }
 }
 

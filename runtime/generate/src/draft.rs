@@ -32,8 +32,10 @@ pub(crate) struct Drawn {
     pub cdf: Value,
     /// What stands in the way, if anything does.
     pub blocker: Option<Blocker>,
-    /// The classes of the things that its goals are about.
+    /// The classes of the things that were drawn for its goals.
     pub things: Vec<String>,
+    /// The classes of things that its goals name themselves.
+    pub named: Vec<String>,
 }
 
 /// What was decided so far.
@@ -47,13 +49,14 @@ pub(crate) struct Draft<'a> {
     conditions: Vec<Value>,
     numbers: BTreeMap<String, u32>,
     things: BTreeSet<String>,
+    named: BTreeSet<String>,
     blocker: Option<Blocker>,
 }
 
 impl<'a> Draft<'a> {
     pub fn new(catalog: &'a Catalog, layout: &'a Layout, pools: &'a Pools, chance: &'a mut Chance) -> Self {
-        let (vars, objects, conditions, numbers, things) = Default::default();
-        Self { chance, catalog, layout, pools, vars, objects, conditions, numbers, things, blocker: None }
+        let (vars, objects, conditions, numbers, things, named) = Default::default();
+        Self { chance, catalog, layout, pools, vars, objects, conditions, numbers, things, named, blocker: None }
     }
 
     /// A mission file of a type, perhaps with something in the way; none where chance has chosen what does not go together. What
@@ -88,9 +91,10 @@ impl<'a> Draft<'a> {
                 robots.push(robot(number, rooms[self.chance.below(rooms.len())]));
             }
         }
-        let (blocker, things) = (self.blocker.take(), std::mem::take(&mut self.things));
+        let blocker = self.blocker.take();
+        let [things, named] = [&mut self.things, &mut self.named].map(|set| std::mem::take(set).into_iter().collect());
         let cdf = self.finish(&kind.name, start, &robots, goals);
-        Some(Drawn { cdf, blocker, things: things.into_iter().collect() })
+        Some(Drawn { cdf, blocker, things, named })
     }
 
     /// What a var stands for; a thing is put into something shut, if asked.
@@ -240,6 +244,7 @@ impl<'a> Draft<'a> {
     fn goal_state(&mut self, state: &str) -> Option<Value> {
         let (of, state) = state.split_once(' ')?;
         let of = of.trim_end_matches(':');
+        self.note_named(of);
         let instance = self.vars.get(of).cloned().unwrap_or_else(|| of.to_owned());
         let (key, value) = state.split_once('=')?;
         if key == "color" {
@@ -247,6 +252,13 @@ impl<'a> Draft<'a> {
         }
         let value = self.vars.get(value).cloned().unwrap_or_else(|| value.to_owned());
         Some(json!({ instance: format!("{key}={value}") }))
+    }
+
+    /// Notes the class of things that a goal names itself, such as `Carrot_01_*`.
+    fn note_named(&mut self, of: &str) {
+        let catalog = self.catalog;
+        let class = of.strip_suffix("_*").and_then(|class| catalog.find(class)).map(|class| catalog.class(class));
+        self.named.extend(class.filter(|class| is_thing(class)).map(|class| class.id.clone()));
     }
 
     /// That a thing has a colour is a condition of the mission's own.

@@ -77,8 +77,10 @@ pub struct Generated {
     pub cdf: Value,
     /// What stands in the way of its goals, if anything was put there.
     pub blocker: Option<Blocker>,
-    /// The classes of the things that its goals are about.
+    /// The classes of the things that were drawn for its goals.
     pub things: Vec<String>,
+    /// The classes of things that its goals name themselves, as in `Carrot_01_* isPickedUp=true`.
+    pub named: Vec<String>,
     /// That, and how, it is solved.
     pub certificate: Certificate,
 }
@@ -98,7 +100,7 @@ impl Generated {
             "utterances": said,
             "difficulty": { "actions": deeds, "walks": plan.len() - deeds, "rooms": rooms.len(), "expanded": expanded },
             "blockers": self.blocker.iter().collect::<Vec<_>>(),
-            "things": self.things,
+            "things": self.all_things(),
             "rooms": rooms.iter().map(|room| room.id()).collect::<Vec<_>>(),
             "plan": plan,
             "certificate": self.certificate,
@@ -113,8 +115,14 @@ impl Generated {
             kind: self.kind.clone(),
             floor_plan: self.cdf["scene"]["layoutOverride"].as_str().unwrap_or_default().to_owned(),
             rooms: self.certificate.rooms.iter().map(|room| room.id().to_owned()).collect(),
-            things: self.things.clone(),
+            things: self.all_things(),
         }
+    }
+
+    /// The classes of all things that its goals are about.
+    fn all_things(&self) -> Vec<String> {
+        let all: BTreeSet<&String> = self.things.iter().chain(&self.named).collect();
+        all.into_iter().cloned().collect()
     }
 }
 
@@ -235,7 +243,7 @@ impl Maker<'_> {
 
     /// The mission of a draft: as long as asked, and with its blocker in the way.
     fn certified(&self, kind: &MissionType, drawn: Drawn, wanted: Option<BlockerKind>) -> Result<Generated, String> {
-        let Drawn { mut cdf, mut blocker, things } = drawn;
+        let Drawn { mut cdf, mut blocker, things, named } = drawn;
         let mut certificate = self.certify(kind, &cdf)?;
         if wanted == Some(BlockerKind::Locked) {
             let opened = certificate.plan.iter().find(|step| step.action == ActionKind::Open.name());
@@ -256,7 +264,7 @@ impl Maker<'_> {
         if !is_in_the_way {
             return Err("what was put in the way was in nobody's way".to_owned());
         }
-        Ok(Generated { id: String::new(), kind: kind.name.clone(), cdf, blocker, things, certificate })
+        Ok(Generated { id: String::new(), kind: kind.name.clone(), cdf, blocker, things, named, certificate })
     }
 
     fn certify(&self, kind: &MissionType, cdf: &Value) -> Result<Certificate, String> {

@@ -124,3 +124,13 @@ fn missions_are_parted_by_what_they_have() {
         assert!(!is_held_out || matches!(part, Part::UnseenFloorPlan | Part::UnseenSeveral), "{facets:?}");
     }
 }
+
+#[test]
+fn a_thing_that_a_type_names_itself_is_one_that_its_goals_are_about() {
+    let spec = Spec::builtin(&Catalog::builtin()).of_types("builtin", &["carrotAndBack".to_owned()]).unwrap();
+    for mission in missions(&spec, 3) {
+        let things = mission.facets().things;
+        assert!(things.contains(&"Carrot_01".to_owned()), "{things:?}");
+        assert_eq!(mission.as_line()["things"], serde_json::json!(things));
+    }
+}

@@ -2,7 +2,8 @@
 
 use std::{
     collections::BTreeMap,
-    io,
+    fs::File,
+    io::{self, Read as _},
     path::{Path, PathBuf},
 };
 
@@ -140,6 +141,16 @@ pub enum LogError {
 }
 
 impl Log {
+    /// Whether there is a file that begins as logs do. Of what is no file, such as a pipe, nothing is read.
+    #[must_use]
+    pub fn is_at(path: &Path) -> bool {
+        let mut beginning = Vec::new();
+        let length = mcap::MAGIC.len() as u64;
+        path.is_file()
+            && File::open(path)
+                .is_ok_and(|file| file.take(length).read_to_end(&mut beginning).is_ok() && beginning == mcap::MAGIC)
+    }
+
     /// Reads the log at `path`.
     ///
     /// # Errors

@@ -32,7 +32,7 @@ use crate::{
     design::{Completion, ConsentBox, Factor, Level, Sheet, Study},
     findings::Findings,
     instrument::Instrument,
-    settings::{OF_PAGES, RECORD_AUDIO, Setting, Settings, WIZARD, arguments},
+    settings::{self, OF_PAGES, RECORD_AUDIO, Setting, Settings, WIZARD, arguments},
     shape::STUDY,
     written::{self, Words, Written, WrittenBox, WrittenFactor, WrittenSettings, WrittenSheet},
 };
@@ -261,11 +261,19 @@ impl Checking<'_, '_> {
     }
 
     /// Those of the settings that can be.
-    fn settings(&mut self, settings: &WrittenSettings, at: &Pointer) -> Settings {
-        let all = settings.iter().map(|(name, value)| (name, written::setting(value.get_ref())));
-        all.filter(|(name, setting)| self.is_setting(name, setting, &at.key(name.get_ref())))
-            .map(|(name, setting)| (name.get_ref().clone(), setting))
-            .collect()
+    fn settings(&mut self, written: &WrittenSettings, at: &Pointer) -> Settings {
+        let mut all = Settings::new();
+        for (name, value) in written {
+            let (place, setting) = (at.key(name.get_ref()), written::setting(value.get_ref()));
+            if self.is_setting(name, &setting, &place) {
+                // Sessions are played where the study's files are kept.
+                for file in settings::files(name.get_ref(), &setting) {
+                    self.file(&Spanned::new(value.span(), file), &place);
+                }
+                all.insert(name.get_ref().clone(), setting);
+            }
+        }
+        all
     }
 
     fn is_setting(&mut self, name: &Spanned<String>, setting: &Setting, at: &Pointer) -> bool {

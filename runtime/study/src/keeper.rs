@@ -27,16 +27,20 @@ use crate::{
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 /// How often time played is written down, s: so much of it is lost with a killed server.
 const SAVE_EVERY_S: f64 = 5.0;
+/// Whose page was not heard of for so long has left. Their session makes room for others, and goes on when they come back.
+const LEFT_AFTER: Duration = Duration::from_secs(600);
 /// So long the end of a mission is seen before the participant goes on.
 const ENDING_SEEN: Duration = Duration::from_secs(4);
 /// How often tables are written anew.
 const TABLES_EVERY: Duration = Duration::from_secs(1);
-/// After this a session that could not be started, or died, is started again.
+/// After this a session that could not be started, or died, is started again; after twice as long each time in a row that it came to
+/// no page, but for no longer than that.
 const RETRY_AFTER: Duration = Duration::from_secs(1);
+const LONGEST_RETRY: Duration = Duration::from_secs(30);
 /// A session whose page is not there by then is started anew.
 const LONGEST_START: Duration = Duration::from_secs(120);
-/// A session goes on from where one of so many tries before it was.
-const TRIES_BEFORE: usize = 2;
+/// A session goes on from where one of so many tries before it was: what the machine lacks for a minute takes no mission along.
+const TRIES_BEFORE: usize = 8;
 /// How long sessions may take to end when the study ends.
 const GRACE: Duration = Duration::from_secs(15);
 
@@ -86,6 +90,15 @@ fn write_tables(state: &Registry) {
     }
 }
 
+/// Tells the experimenter's terminal why something did not happen to a participant.
+fn tell(place: u32, fault: &StudyFault) {
+    match fault {
+        StudyFault::Journal(error) => tracing::error!("{error}"),
+        StudyFault::Folder(error) => tracing::error!("{error}"),
+        StudyFault::Refused(_) | StudyFault::NotNow(_) => tracing::error!("{}: {fault}", pseudonym(place)),
+    }
+}
+
 /// What was told of a participant's session.
 enum News {
     Over(Ending),
@@ -102,6 +115,7 @@ impl Registry {
                 self.take(place, news);
             }
             self.end_break(place);
+            self.assign_late(place);
             self.remove_withdrawn(place);
         }
         for party in self.queue() {
@@ -134,6 +148,9 @@ impl Registry {
 
     /// What is new of a participant's session. Time counts while its page is there, and the participant's too.
     fn look_at(&mut self, place: u32) -> Option<News> {
+        if self.is_left(place) {
+            return Some(News::Interrupted("nobody has been at its page for a long time".to_owned()));
+        }
         let participant = self.participants.get_mut(&place)?;
         let (is_here, left_s) = (participant.is_here(), participant.progress.left_s());
         let live = participant.live.as_mut()?;
@@ -148,6 +165,7 @@ impl Registry {
                 live.over.get_or_insert((ending, now));
             }
             Look::Open(page) => {
+                participant.failed = None;
                 let is_new = live.page.replace(page).is_none();
                 live.looked = if is_new { now } else { live.looked };
             }
@@ -170,6 +188,16 @@ impl Registry {
         self.ask_probe(place, &happened);
         self.tick_exercises(place, &tried);
         None
+    }
+
+    /// Whether a participant has left the session that they play; of a pair's, whether both have.
+    fn is_left(&self, place: u32) -> bool {
+        let is_away = |place: u32| {
+            let seen = self.participants.get(&place).and_then(|one| one.seen);
+            seen.is_some_and(|seen| seen.elapsed() >= LEFT_AFTER)
+        };
+        let live = self.participants.get(&place).and_then(|one| one.live.as_ref());
+        live.is_some_and(|live| live.over.is_none()) && is_away(place) && self.playmate(place).is_none_or(is_away)
     }
 
     /// Notes which exercises of a tutorial a participant has tried.
@@ -208,21 +236,40 @@ impl Registry {
             News::Over(ending) => self.note(place, &Event::Over { ending }),
             News::Interrupted(reason) => {
                 tracing::warn!("{}: the session ended before its time: {reason}", pseudonym(place));
+                self.retry_later(place, &reason);
                 self.note(place, &Event::Interrupted { reason });
-                if let Some(participant) = self.participants.get_mut(&place) {
-                    participant.retry_at = Some(Instant::now() + RETRY_AFTER);
-                }
             }
         }
     }
 
+    /// Has a session be started again after a while. What cannot be started at all is not tried over and over.
+    fn retry_later(&mut self, place: u32, reason: &str) {
+        let Some(participant) = self.participants.get_mut(&place) else { return };
+        let had_page = participant.live.as_ref().is_some_and(|live| live.page.is_some());
+        let before = participant.failed.take().map_or(0, |(times, _)| times);
+        let wait = RETRY_AFTER * 2_u32.saturating_pow(before);
+        if !had_page {
+            participant.failed = Some((before.saturating_add(1), reason.to_owned()));
+        }
+        participant.retry_at = Some(Instant::now() + wait.min(LONGEST_RETRY));
+    }
+
     /// Has something happen to a participant; that it cannot is told to the experimenter's terminal.
     pub(crate) fn note(&mut self, place: u32, event: &Event) {
-        match self.apply(place, event) {
-            Ok(()) => {}
-            Err(StudyFault::Journal(error)) => tracing::error!("{error}"),
-            Err(StudyFault::Folder(error)) => tracing::error!("{error}"),
-            Err(error) => tracing::error!("{}: {error}", pseudonym(place)),
+        if let Err(fault) = self.apply(place, event) {
+            tell(place, &fault);
+        }
+    }
+
+    /// Assigns a condition that could not be written down when it was due, such as on a full disk; it is tried every second.
+    fn assign_late(&mut self, place: u32) {
+        let Some(participant) = self.participants.get_mut(&place) else { return };
+        let is_due = participant.retry_at.is_none_or(|at| at <= Instant::now());
+        if *participant.progress.phase() == Phase::Assigning && is_due {
+            participant.retry_at = Some(Instant::now() + RETRY_AFTER);
+            if let Err(fault) = self.assign(place) {
+                tell(place, &fault);
+            }
         }
     }
 
@@ -286,7 +333,7 @@ impl Registry {
         }
     }
 
-    /// The logs of the last tries. One that cannot be gone on from leaves none, so after a few a mission begins anew.
+    /// The logs of the last tries. One that cannot be gone on from leaves none, so after several a mission begins anew.
     fn before(&self, place: u32, step: usize, attempt: u32, together: u32) -> Vec<PathBuf> {
         let tries = (1..attempt).rev().take(TRIES_BEFORE);
         let logs = tries.map(|attempt| self.folder.log_path(&name_of_try(place, step, attempt, together)));

@@ -96,7 +96,7 @@ pub use simulate::{
     Answering, DryRun, Leaving, People, PeopleError, Shift, SimulateError, Simulated, SimulatedMission,
     SimulatedPlayer, SimulatedSession, Speaking, simulate,
 };
-pub use tables::{DataPackageError, TablesError, all as all_tables, export, is_practice};
+pub use tables::{DataPackageError, TablesError, all as all_tables, export, is_of_excluded, is_practice};
 pub use tutorial::{Activity, Exercise, Tried};
 pub use web::{Doors, StudyService, address};
 pub use wizard::Wizard;

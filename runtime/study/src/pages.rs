@@ -49,7 +49,8 @@ impl Registry {
         let Some((index, step, doing)) = progress.step_now() else {
             return match progress.phase() {
                 Phase::Finished => ended("finished", &self.study),
-                Phase::Excluded => json!({ "page": "excluded" }),
+                // Everybody who took part is debriefed.
+                Phase::Excluded => json!({ "page": "excluded", "html": self.study.debriefing.as_deref().map(html) }),
                 Phase::Assigning => json!({ "page": "starting" }),
                 Phase::Parted => ended("parted", &self.study),
                 _ => json!({ "page": "withdrawn" }),
@@ -184,7 +185,9 @@ impl Registry {
         row["away_s"] = json!(participant.seen.map(|seen| seen.elapsed().as_secs()));
         row["waited_s"] = json!(self.waited_s(place));
         row["partner_is_late"] = json!(self.may_instead(place).is_some());
-        if let Some((_, mission, _)) = progress.mission() {
+        if let Some((_, mission, doing)) = progress.mission() {
+            let failed = participant.failed.as_ref().filter(|_| doing != Doing::Ready);
+            row["failed"] = json!(failed.map(|(_, reason)| reason));
             row["mission"] = json!(mission.mission);
             row["now"] = json!(levels(&mission.within));
             row["played_s"] = json!(progress.played_s() + participant.live.as_ref().map_or(0.0, |live| live.unsaved_s));

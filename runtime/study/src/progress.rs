@@ -35,6 +35,8 @@ pub struct Progress {
     together: u32,
     /// Whether they go on without their partner.
     is_alone: bool,
+    /// Why the experimenter excluded them, if they did.
+    exclusion: Option<String>,
     /// Whether they agreed to be heard by a microphone.
     agrees_to_audio: bool,
     /// What they have filled in of the present questionnaire so far: no answers yet.
@@ -154,6 +156,7 @@ impl Progress {
             attempts: 0,
             together: 0,
             is_alone: false,
+            exclusion: None,
             agrees_to_audio: false,
             draft: Vec::new(),
             drafts: 0,
@@ -223,6 +226,12 @@ impl Progress {
             Phase::At(index, Doing::Playing) if self.together == self.attempts && self.together > 0 => Some(index),
             _ => None,
         }
+    }
+
+    /// Why the experimenter excluded them, if they did.
+    #[must_use]
+    pub fn exclusion(&self) -> Option<&str> {
+        self.exclusion.as_deref()
     }
 
     /// Whether they agreed to be heard by a microphone.
@@ -319,9 +328,10 @@ impl Progress {
                 self.plan = (**plan).clone();
                 self.begin(step, at_ms);
             }
-            (Phase::At(..) | Phase::Assigning | Phase::Finished, Event::Excluded { .. }) => {
+            (Phase::At(..) | Phase::Assigning | Phase::Finished, Event::Excluded { reason }) => {
                 let effects = self.end_session();
                 self.phase = Phase::Excluded;
+                self.exclusion = Some(reason.clone());
                 return Ok(effects);
             }
             (Phase::At(..) | Phase::Assigning, Event::PartnerLeft) if !self.is_alone => {

@@ -52,6 +52,8 @@ pub(crate) struct Participant {
     pub live: Option<Live>,
     /// When a session may be started for them again.
     pub retry_at: Option<Instant>,
+    /// How many sessions of theirs in a row ended before they had a page, and why the last one did.
+    pub failed: Option<(u32, String)>,
     /// When they came into the queue: a count.
     pub queued: u64,
     /// Since when they have waited for their partner, while they are here.
@@ -268,7 +270,7 @@ impl Registry {
     }
 
     /// Assigns a condition to somebody who has answered what it depends on.
-    fn assign(&mut self, place: u32) -> Result<(), StudyFault> {
+    pub(crate) fn assign(&mut self, place: u32) -> Result<(), StudyFault> {
         let (Some(minimisation), Some(participant)) = (&self.study.minimisation, self.participants.get(&place)) else {
             return Ok(());
         };
@@ -435,6 +437,7 @@ impl Participant {
             seen: None,
             live: None,
             retry_at: None,
+            failed: None,
             queued: 0,
             waits_since: None,
             skip_wanted: None,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_dialog::OnTimeout;
+use cohabit_dialog::{OnTimeout, questionnaire_text};
 use serde::{Deserialize, Serialize};
 
 use crate::wizard::Wizard;
@@ -42,6 +42,27 @@ pub const DRIVE: &str = "drive";
 pub const ASK: &str = "ask";
 /// The flag of `cohabit play` that keeps what people say.
 pub const RECORD_AUDIO: &str = "record-audio";
+
+/// The setting by which bodies get minds, some of which go by a file: `scripted@1=walk.txt`.
+const AGENT: &str = "agent";
+/// The setting by which the page of a session asks something: questionnaires that ship, or files.
+const QUESTIONNAIRE: &str = "questionnaire";
+
+/// The files that a setting names.
+#[must_use]
+pub fn files(name: &str, setting: &Setting) -> Vec<String> {
+    let values: &[String] = match setting {
+        Setting::Switch(_) => &[],
+        Setting::Value(value) => std::slice::from_ref(value),
+        Setting::Values(values) => values,
+    };
+    let file = |value: &String| match name {
+        AGENT => value.split_once('=').map(|(_, file)| file.to_owned()),
+        QUESTIONNAIRE => questionnaire_text(value).is_none().then(|| value.clone()),
+        _ => None,
+    };
+    values.iter().filter_map(file).collect()
+}
 
 /// These settings with others on top.
 #[must_use]

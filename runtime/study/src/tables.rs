@@ -65,6 +65,13 @@ pub fn is_practice(all: &[Progress], session: &str) -> bool {
     all.iter().any(|progress| whose.includes(progress.plan().place) && progress.plan().is_practice(step))
 }
 
+/// Whether a session of that name is of somebody whom the experimenter excluded; of a pair's: of either.
+#[must_use]
+pub fn is_of_excluded(all: &[Progress], session: &str) -> bool {
+    let Some((whose, _)) = step_of(session) else { return false };
+    all.iter().any(|progress| progress.exclusion().is_some() && whose.includes(progress.plan().place))
+}
+
 /// All tables of a study, with those of its logs, which get columns for whose they are and under which conditions, and a
 /// codebook at the end. Missions for practice are in none, but `with_practice`.
 #[must_use]
@@ -177,6 +184,7 @@ fn participants(study: &Study, all: &[Progress], withdrawn: &[String]) -> Table 
         field("steps", Whole, "", "steps of their plan"),
         field("consented_ms", Whole, "ms", "wall time at which they agreed to take part, since 1970"),
         field("last_ms", Whole, "ms", "wall time at which their last step ended, since 1970"),
+        field("excluded_because", Text, "", "why the experimenter excluded them; nothing, if they did not"),
     ];
     let covariates = covariates(study)
         .map(|name| field(format!("covariate_{name}"), Text, "", "its level, by which their condition was assigned"));
@@ -206,6 +214,7 @@ fn participant(study: &Study, progress: &Progress) -> Vec<Cell> {
         whole(plan.steps.len()),
         done.first().map_or_else(|| whole(progress.since_ms()), |done| whole(done.began_ms)),
         done.last().map_or(Cell::Nothing, |done| whole(done.ended_ms)),
+        progress.exclusion().map_or(Cell::Nothing, text),
     ];
     let covariate = |name: &str| plan.covariates.get(name).map_or(Cell::Nothing, text);
     let between = factor_cells(study, &BETWEEN, &plan.between);

@@ -58,7 +58,7 @@ function fill(row, one) {
     const cell = row.children[index + 1];
     if (cell.textContent !== text) cell.textContent = text;
   });
-  row.classList.toggle("alarm", isSilent(one) || Boolean(one.lacks_wizard || one.partner_is_late));
+  row.classList.toggle("alarm", isSilent(one) || Boolean(one.failed || one.lacks_wizard || one.partner_is_late));
 }
 
 const isOut = ({ progress }) => ["not begun", "finished", "excluded", "withdrawn", "parted"].includes(progress);
@@ -75,7 +75,9 @@ function pageOf(one) {
 function showAlarm() {
   const lacking = state.participants.filter((one) => one.lacks_wizard).map(({ participant }) => participant);
   const waiting = state.participants.filter((one) => one.partner_is_late).map(({ participant }) => participant);
+  const failing = state.participants.filter((one) => one.failed).map(({ participant, failed }) => `${participant} (${failed})`);
   const alarms = [
+    failing.length ? `Sessions cannot be started, and are tried again and again: ${failing.join(", ")}` : "",
     lacking.length ? `Nobody sits at the wizard's seat: ${lacking.join(", ")}` : "",
     waiting.length ? `These participants have waited long for a partner; please look for the partner: ${waiting.join(", ")}` : "",
   ];
@@ -137,10 +139,11 @@ function showAbout() {
 }
 
 function showNotes() {
-  const list = byId("notes");
-  if (list.childElementCount === state.notes.length) return;
+  const [list, now] = [byId("notes"), JSON.stringify(state.notes)];
+  if (list.dataset.shown === now) return;
+  list.dataset.shown = now;
   const rows = state.notes.map(({ at_ms, participant, text }) => {
-    const at = element("time", "soft", new Date(at_ms).toLocaleTimeString());
+    const at = element("time", "soft", new Date(at_ms).toLocaleString());
     at.dateTime = new Date(at_ms).toISOString();
     return element("li", "", at, " ", element("b", "", participant ?? "Study"), " ", text);
   });

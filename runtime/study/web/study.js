@@ -20,7 +20,7 @@ let step = null;
 let kept = { takesPart: false };
 
 /** Whether it is the last page of somebody whose answers are kept. */
-const hasEnded = (page) => page === "finished" || page === "parted";
+const hasEnded = (page) => ["finished", "parted", "excluded"].includes(page);
 
 const send = (event) => tell("event", { step, event });
 
@@ -303,10 +303,11 @@ const PAGES = {
     element("p", "", words("withdrawn_about")),
   ],
 
-  excluded: () => [
-    heading(words("excluded")),
-    element("p", "", words("excluded_about")),
-  ],
+  excluded({ html }) {
+    const parts = [heading(words("excluded")), element("p", "", words("excluded_about"))];
+    if (html) parts.push(sheet(html));
+    return parts;
+  },
 
   unknown: () => [
     heading(words("unknown")),

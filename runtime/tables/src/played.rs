@@ -3,14 +3,14 @@
 use std::{
     collections::BTreeMap,
     fmt::Display,
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
 };
 
-use cohabit_cdf::{Action, BodyKind, Catalog, Mission, Status, mission};
+use cohabit_cdf::{Action, BodyKind, Catalog, Mission, PackId, Status, mission};
 use cohabit_record::{Branch, DialogEntry, EventEntry, Log, LogError, Movement};
 use cohabit_world::DT_NANOS;
 
-/// The body that is spoken to.
+/// The body that is spoken to, where nothing else was noted.
 pub(crate) const ROBOT: u32 = 0;
 
 /// A session that was played.
@@ -42,6 +42,16 @@ pub enum PlayedError {
         name: String,
         /// What is wrong.
         problems: mission::Problems,
+    },
+    /// Its mission is one of a world pack that is not there.
+    #[error(
+        "{name}: it was played with the world pack {pack}, which is not given in this version: name its folder by `--world`"
+    )]
+    NoPack {
+        /// The log.
+        name: String,
+        /// The pack.
+        pack: PackId,
     },
 }
 
@@ -106,19 +116,15 @@ impl Played {
         Self::new(&name, Log::open(path)?, catalog)
     }
 
-    /// Reads several logs. Where files of several folders have one name, sessions are called by folder and file.
+    /// Reads several logs. Where several files have one name, sessions are called by file and as many of the folders around it as
+    /// tell them apart.
     ///
     /// # Errors
     /// [`PlayedError`].
     pub fn open_all(paths: &[PathBuf], catalog: &Catalog) -> Result<Vec<Self>, PlayedError> {
         let mut all = paths.iter().map(|path| Self::open(path, catalog)).collect::<Result<Vec<_>, _>>()?;
-        let mut count = BTreeMap::<String, usize>::new();
-        for played in &all {
-            *count.entry(played.name.clone()).or_default() += 1;
-        }
-        for (played, path) in all.iter_mut().zip(paths).filter(|(played, _)| count[&played.name] > 1) {
-            let folder = path.parent().and_then(Path::file_name).unwrap_or_default();
-            played.name = format!("{}/{}", folder.to_string_lossy(), played.name);
+        for (played, name) in all.iter_mut().zip(names(paths)) {
+            played.name = name;
         }
         carry_on(&mut all);
         Ok(all)
@@ -127,11 +133,11 @@ impl Played {
     /// The session of a log that goes by that name.
     ///
     /// # Errors
-    /// [`PlayedError::Mission`].
+    /// [`PlayedError::Mission`], [`PlayedError::NoPack`].
     pub fn new(name: &str, log: Log, catalog: &Catalog) -> Result<Self, PlayedError> {
         let (file, text) = (&log.session.mission_file, &log.session.mission_text);
         let read = mission::read_mission(file, text, catalog);
-        let mission = read.map_err(|problems| PlayedError::Mission { name: name.to_owned(), problems })?.mission;
+        let mission = read.map_err(|problems| unread(name, problems, &log.session.packs, catalog))?.mission;
         let (turns, turn_of) = turns(&log.dialog);
         let (actions, goals) = (actions(&log, &turn_of), goals(&mission, &log.events));
         Ok(Self { name: name.to_owned(), log, mission, turns, actions, goals, movement: None, is_continued: false })
@@ -165,9 +171,58 @@ impl Played {
         self.log.session.settings.get("wizard").is_some_and(|takes_part| takes_part != "no")
     }
 
-    /// What the robot was told to do.
+    /// What the robots that are spoken to were told to do.
     pub(crate) fn robots_actions(&self) -> impl Iterator<Item = &Deed> {
-        self.actions.iter().filter(|deed| deed.body == ROBOT)
+        let robots = self.robots();
+        self.actions.iter().filter(move |deed| robots.contains(&deed.body))
+    }
+
+    /// The bodies that are spoken to.
+    fn robots(&self) -> Vec<u32> {
+        let noted = self.log.session.settings.get("robots").map_or("", String::as_str);
+        let robots: Vec<u32> = noted.split(',').filter_map(|body| body.parse().ok()).collect();
+        if robots.is_empty() { vec![ROBOT] } else { robots }
+    }
+}
+
+/// What the sessions of these logs are called. Statistics take sessions that are called the same, and name no participant, for those of
+/// one participant, so each has a name of its own.
+fn names(paths: &[PathBuf]) -> Vec<String> {
+    let parts: Vec<Vec<String>> = paths.iter().map(|path| parts(path)).collect();
+    let named = |own: &[String], folders: usize| own[own.len().saturating_sub(folders + 1)..].join("/");
+    let deepest = parts.iter().map(Vec::len).max().unwrap_or(0);
+    let mut names: Vec<String> = parts.iter().map(|own| named(own, 0)).collect();
+    for folders in 1..deepest {
+        let mut count = BTreeMap::<String, usize>::new();
+        for name in &names {
+            *count.entry(name.clone()).or_default() += 1;
+        }
+        for (name, own) in names.iter_mut().zip(&parts) {
+            if count[name.as_str()] > 1 {
+                *name = named(own, folders);
+            }
+        }
+    }
+    names
+}
+
+/// The folders that a log is in, the outermost first, and behind them its file's name without the ending.
+fn parts(path: &Path) -> Vec<String> {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).with_extension("");
+    let text = |part: Component<'_>| match part {
+        Component::Normal(name) => Some(name.to_string_lossy().into_owned()),
+        _ => None,
+    };
+    whole.components().filter_map(text).collect()
+}
+
+/// Why a mission cannot be read. Where a pack is missing, all that is said of rooms and classes follows from that.
+fn unread(name: &str, problems: mission::Problems, packs: &[PackId], catalog: &Catalog) -> PlayedError {
+    let name = name.to_owned();
+    let missing = packs.iter().find(|pack| !catalog.packs().contains(pack));
+    match missing.cloned() {
+        Some(pack) => PlayedError::NoPack { name, pack },
+        None => PlayedError::Mission { name, problems },
     }
 }
 

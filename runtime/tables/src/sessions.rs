@@ -28,7 +28,7 @@ const FIELDS: [Field; 24] = [
     Field::new("goals_met", Whole, "", "those of them that were met in the end"),
     Field::new("turns", Whole, "", "what people said"),
     Field::new("questions", Whole, "", "what the robot asked"),
-    Field::new("actions", Whole, "", "commands that the robot was given"),
+    Field::new("actions", Whole, "", "commands that the robot was given; of several those that are spoken to"),
     Field::new("failed_actions", Whole, "", "those of them that failed"),
     Field::new("other_actions", Whole, "", "commands that other bodies were given, but for those of held keys"),
     Field::new("answered_ms", Real, "ms", "wall time from words to the first answer or question, mean over turns"),

@@ -126,7 +126,15 @@ fn fits(compared: &Compared) -> Vec<Fit> {
 fn notes(compared: &Compared) -> Vec<String> {
     let unnamed = (compared.is_repeated && compared.unnamed > 0)
         .then(|| format!("{} sessions name no participant: each counts as one of its own", compared.unnamed));
-    unnamed.into_iter().collect()
+    let incomplete = (compared.incomplete > 0).then(|| {
+        format!(
+            "sessions whose logs were cut off or lack something: {} of {}; what is not in them counts as not done, and the column \
+             `problems` of the table `sessions` says what that is",
+            compared.incomplete,
+            compared.len()
+        )
+    });
+    unnamed.into_iter().chain(incomplete).collect()
 }
 
 impl Group {

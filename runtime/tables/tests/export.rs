@@ -3,7 +3,7 @@
 
 use std::{convert::Infallible, fs, path::Path, sync::Arc};
 
-use cohabit_cdf::{BodyKind, Catalog};
+use cohabit_cdf::{BodyKind, Catalog, PackId};
 use cohabit_eval::{Settings, play, read_tasks};
 use cohabit_language::{Asking, Language};
 use cohabit_record::{Log, Movement, Stop, Trail};
@@ -74,6 +74,26 @@ fn tables_hold_what_was_counted_while_sessions_were_played() {
     }
 }
 
+#[test]
+fn actions_of_each_robot_that_is_spoken_to_are_counted() {
+    let (one, counted) = sessions("export-robots", Asking::Never).remove(0);
+    let mut log = Log::open(counted.log.as_ref().unwrap()).unwrap();
+    // The same, had it been the second of two robots that was told all.
+    log.session.settings.insert("robots".to_owned(), "0,1".to_owned());
+    log.ticks.iter_mut().flat_map(|tick| &mut tick.inputs).for_each(|input| input.body = 1);
+    log.dialog.iter_mut().for_each(|entry| entry.body = 1);
+    let other = Played::new("other", log, &Catalog::builtin()).unwrap();
+    let counts = |played: Played| {
+        let all = tables(&[played]);
+        let sum = |name: &str, column: &str| table(&all, name).column(column).map(whole).sum::<i64>();
+        [("sessions", "actions"), ("sessions", "other_actions"), ("turns", "actions")]
+            .map(|(name, column)| sum(name, column))
+    };
+    let alone = counts(one);
+    assert!(alone[0] > 0 && alone[1] == 0 && alone[0] == alone[2], "{alone:?}");
+    assert_eq!(counts(other), alone);
+}
+
 /// What is written as CSV is read back cell by cell.
 fn check_file(table: &Table) {
     let path = write_csv(table, Path::new(FOLDER)).unwrap();
@@ -130,6 +150,22 @@ fn conditions_are_compared_and_fitted() {
     assert!(unknown.contains("no session notes `moon`") && unknown.contains("ask, knows, mission"), "{unknown}");
 }
 
+#[test]
+fn sessions_of_one_name_are_told_apart_by_the_folders_around_them() {
+    let log = sessions("export-names", Asking::Never).remove(0).1.log.unwrap();
+    let paths = ["never/logs", "unsure/logs"].map(|folder| {
+        let folder = Path::new(FOLDER).join("export-names").join(folder);
+        fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("cold_soda.mcap");
+        fs::copy(&log, &path).unwrap();
+        path
+    });
+    let catalog = Catalog::builtin();
+    let names = |played: Vec<Played>| played.into_iter().map(|one| one.name).collect::<Vec<_>>();
+    assert_eq!(names(Played::open_all(&paths, &catalog).unwrap()), ["never/logs/cold_soda", "unsure/logs/cold_soda"]);
+    assert_eq!(names(Played::open_all(&paths[..1], &catalog).unwrap()), ["cold_soda"]);
+}
+
 /// A robot and a person who stand two metres apart for a second.
 fn standing(_: &Log) -> Result<Movement, Infallible> {
     let trail = |body: u32, kind: BodyKind| {
@@ -138,6 +174,17 @@ fn standing(_: &Log) -> Result<Movement, Infallible> {
     };
     let trails = vec![trail(0, BodyKind::Robot), trail(1, BodyKind::Person)];
     Ok(Movement { trails, ..Movement::default() })
+}
+
+#[test]
+fn a_session_of_a_world_pack_that_is_not_given_asks_for_it() {
+    let (_, counted) = sessions("export-pack", Asking::Never).remove(0);
+    let mut log = Log::open(counted.log.as_ref().unwrap()).unwrap();
+    // Its floor plan is one of the pack.
+    log.session.mission_text = log.session.mission_text.replace("OfficeLayout", "Flat");
+    log.session.packs = vec![PackId { name: "homes".to_owned(), version: "1".to_owned(), digest: "ab".to_owned() }];
+    let error = Played::new("tea", log, &Catalog::builtin()).unwrap_err().to_string();
+    assert!(error.contains("tea: ") && error.contains("`homes`") && error.contains("`--world`"), "{error}");
 }
 
 #[test]
@@ -165,4 +212,19 @@ fn sessions_with_people_tell_how_robots_moved_around_them() {
     assert_eq!(problems, [&Cell::Text("no such mission".to_owned())]);
     let (alone, _) = sessions("export-alone", Asking::Never).remove(0);
     assert!(!tables(&[alone.with_movement(standing)]).iter().any(|table| table.name == "social"));
+}
+
+#[test]
+fn a_summary_tells_of_sessions_whose_logs_were_cut_off() {
+    let (mut played, counted): (Vec<_>, Vec<_>) = sessions("export-cut", Asking::Never).into_iter().unzip();
+    assert!(Summary::new(&played, &[]).unwrap().notes.is_empty());
+    // Its recorder was killed half way.
+    let path = counted[0].log.as_ref().unwrap();
+    let bytes = fs::read(path).unwrap();
+    fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
+    played[0] = Played::open(path, &Catalog::builtin()).unwrap();
+    let summary = Summary::new(&played, &[]).unwrap();
+    assert_eq!(summary.sessions, 3);
+    let text = summary.to_string();
+    assert!(text.contains("sessions whose logs were cut off or lack something: 1 of 3;"), "{text}");
 }

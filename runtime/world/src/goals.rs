@@ -1,8 +1,8 @@
 //! Goals: whether what a mission asks for holds now, and whether it was met before.
 
 use cohabit_cdf::{
-    Expression, Fluid, Goal, GoalState, InstancePattern, Mission, ObjectId, Occasion, Predicate, Property, Relation,
-    StateFlag, StateFlags,
+    Catalog, ClassId, Expression, Fluid, Goal, GoalState, InstancePattern, Mission, ObjectId, Occasion, Predicate,
+    Property, Relation, StateFlag, StateFlags,
 };
 
 use crate::{anchors::is_full, facts::Facts, sight::sees, state::State};
@@ -83,16 +83,18 @@ pub(crate) fn statuses(mission: &Mission, state: &State) -> Vec<GoalStatus> {
 pub(crate) enum Meant<'p> {
     /// This one.
     One(&'p str),
-    /// Those whose instance begins so, and those of this class: `Carrot_01_*` is any carrot, also one that a machine made and named after
-    /// itself.
-    Any { prefix: &'p str, class: &'p str },
+    /// Those of this class: `Carrot_01_*` is any carrot, also one that a machine made and named after itself.
+    Class(ClassId),
+    /// Those whose instance begins so.
+    Any(&'p str),
 }
 
 impl<'p> Meant<'p> {
-    pub(crate) fn new(pattern: &'p InstancePattern) -> Self {
-        match pattern.0.strip_suffix('*') {
-            Some(prefix) => Self::Any { prefix, class: prefix.trim_end_matches('_') },
-            None => Self::One(&pattern.0),
+    pub(crate) fn new(catalog: &Catalog, pattern: &'p InstancePattern) -> Self {
+        match (pattern.class_in(catalog), pattern.0.strip_suffix('*')) {
+            (Some(class), _) => Self::Class(class),
+            (None, Some(prefix)) => Self::Any(prefix),
+            (None, None) => Self::One(&pattern.0),
         }
     }
 
@@ -100,10 +102,11 @@ impl<'p> Meant<'p> {
         let object = facts.object(id);
         match self {
             Self::One(instance) => object.is_called(instance),
-            Self::Any { prefix, class } => {
+            Self::Class(class) => object.class == *class,
+            Self::Any(prefix) => {
                 object.instance.starts_with(prefix)
                     || object.aliases.iter().any(|alias| alias.starts_with(prefix))
-                    || facts.class(id).id == *class
+                    || facts.class(id).id == *prefix
             }
         }
     }
@@ -117,7 +120,7 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn meant<'b>(&'b self, pattern: &'b InstancePattern) -> impl Iterator<Item = ObjectId> + 'b {
-        let meant = Meant::new(pattern);
+        let meant = Meant::new(self.facts.catalog, pattern);
         self.facts.state.existing().map(|(id, _)| id).filter(move |id| meant.is(self.facts, *id))
     }
 
@@ -175,7 +178,7 @@ impl Judge<'_> {
     }
 
     fn contains(&self, receptacle: ObjectId, what: &InstancePattern) -> bool {
-        let meant = Meant::new(what);
+        let meant = Meant::new(self.facts.catalog, what);
         self.facts.contents(receptacle).into_iter().any(|id| meant.is(self.facts, id))
     }
 
@@ -207,7 +210,7 @@ impl Judge<'_> {
     /// Whether that dinosaur was fed; any, if the target is none.
     fn dino_fed(&self, target: &InstancePattern) -> bool {
         let dinosaurs = &self.facts.state.dinosaurs;
-        let meant = Meant::new(target);
+        let meant = Meant::new(self.facts.catalog, target);
         let known = |id: &ObjectId| meant.is(self.facts, *id);
         let named = dinosaurs.keys().any(known);
         dinosaurs.iter().any(|(id, dinosaur)| dinosaur.fed && (!named || known(id)))

@@ -51,7 +51,7 @@ fn told(message: &Message) -> Event {
 fn shown(facts: &Facts<'_>, movement: &CameraMovement) -> Option<Event> {
     let target = match &movement.view {
         CameraView::Object(pattern) => {
-            let those = goals::Meant::new(pattern);
+            let those = goals::Meant::new(facts.catalog, pattern);
             let mut meant = facts.state.existing().map(|(id, _)| id).filter(|id| those.is(facts, *id));
             CameraTarget::Object(meant.next()?)
         }
@@ -66,16 +66,15 @@ fn shown(facts: &Facts<'_>, movement: &CameraMovement) -> Option<Event> {
 /// What comes into the world now: from behind a portal that is open, because its condition holds, or with what it is in.
 pub(crate) fn arrivals(facts: &Facts<'_>, mission: &Mission) -> Vec<Effect> {
     let arrival = |object: ObjectId, away: &Away| {
+        // What it is in comes first, or it would come to stand in mid-air.
+        let there = away.support.parent().is_none_or(|carrier| !facts.state.away.contains_key(&carrier));
         let spot = match &away.until {
             Until::Portal(name) => Spot::Floor(foot(facts, leading_to(facts, name)?)),
             Until::Condition(index) => {
                 let condition = mission.objects.get(*index)?.condition.as_ref()?;
-                goals::occurs(facts, mission, condition).then(|| own_place(facts, away))?
+                (there && goals::occurs(facts, mission, condition)).then(|| own_place(facts, away))?
             }
-            Until::Carrier => {
-                let there = away.support.parent().is_none_or(|carrier| !facts.state.away.contains_key(&carrier));
-                there.then(|| own_place(facts, away))?
-            }
+            Until::Carrier => there.then(|| own_place(facts, away))?,
         };
         Some(Effect::Return { object, spot })
     };

@@ -93,6 +93,16 @@ fn a_hidden_goal_shows_once_its_key_was_examined() {
 }
 
 #[test]
+fn a_hidden_goal_shows_once_its_key_was_taken() {
+    let hidden = Goal { hidden: true, unlocked_by: Some("Bowl_01_1".to_owned()), ..goal(0, "Apple_1", held(true)) };
+    let mut player = player(vec![hidden], Vec::new());
+    player.must(&["goto Bowl_01_1"]);
+    assert!(player.world.goals()[0].hidden, "to be near it is not enough");
+    player.must(&["pickup Bowl_01_1"]);
+    assert!(!player.world.goals()[0].hidden);
+}
+
+#[test]
 fn conditions_combine() {
     let target = || InstancePattern("TableRound_02_1".to_owned());
     let contains = |what: &str| Expression::Contains { target: target(), contains: InstancePattern(what.to_owned()) };

@@ -121,6 +121,16 @@ fn some_objects_stay_away() {
 }
 
 #[test]
+fn what_the_plan_has_elsewhere_is_brought_to_the_room_that_is_said() {
+    let wishes = ["Apple_10000 at Lab1", "Apple_10001 at BreakRoom", "Microwave_01_10000 at Lab1"];
+    let player = player(RoomId::BREAK_ROOM, &wishes);
+    let room = |instance: &str| player.world.object(player.id(instance)).unwrap().room;
+    assert_eq!(room("Apple_10000"), RoomId::LAB1);
+    assert_eq!(inside(&player, "Apple_10001").as_deref(), Some("FridgeLower_02_10000"), "it is in that room already");
+    assert_eq!(room("Microwave_01_10000"), RoomId::BREAK_ROOM, "what nobody carries stays");
+}
+
+#[test]
 fn chance_follows_the_missions_own_seed() {
     let place = |seed: Option<u64>, session: u64| {
         let mission =
@@ -157,11 +167,15 @@ fn a_machine_of_the_plan_answers_to_a_small_number_wherever_it_is_named() {
 
 #[test]
 fn every_key_of_a_goal_is_judged() {
-    let table = GoalState { instance: pattern("TableRound_02_1"), predicate: Predicate::Contains(pattern("Apple_*")) };
     let predicate = |instance: &str, predicate| GoalState { instance: pattern(instance), predicate };
+    let holds = |what| predicate("TableRound_02_1", Predicate::Contains(pattern(what)));
+    // A class and `_*` is that class alone, not those whose ids begin with its own.
+    let (table, virus) = (holds("Apple_*"), holds("Floppy_Virus_*"));
     for (wishes, state, expected) in [
         (&[TABLE, "Apple_1 in TableRound_02_1"][..], table.clone(), true),
         (&[TABLE], table, false),
+        (&[TABLE, "Floppy_Virus_1 in TableRound_02_1"], virus.clone(), true),
+        (&[TABLE, "Floppy_Virus_Broken_1 in TableRound_02_1"], virus, false),
         (&["Bowl_01_1 filled Milk"], predicate("Bowl_01_1", Predicate::Filled(Fluid::Milk)), true),
         (&["Bowl_01_1 filled Water"], predicate("Bowl_01_1", Predicate::Filled(Fluid::Milk)), false),
         (&["Bowl_01_1 filled Water"], predicate("Bowl_01_1", Predicate::FilledWithAny), true),
@@ -340,6 +354,24 @@ fn messages_and_camera_movements_come_when_they_are_due() {
     let point = CameraTarget::Point([1.0, 2.0, 0.5]);
     let (room, view) = (CameraTarget::Room(RoomId::LAB1), CameraTarget::Viewpoint(RoomId::LAB2, 3));
     assert_eq!(shown, [CameraTarget::Object(player.id("Apple_1")), point, room, view, point]);
+}
+
+#[test]
+fn what_is_in_something_that_is_away_waits_for_its_own_time_too() {
+    let taken = |thing: &str| Occasion::States(vec![flag(thing, StateFlag::PickedUp, true)], Relation::And);
+    let late = |wish: &str, after: &str| ObjectRequest { condition: Some(taken(after)), ..request(wish) };
+    let plate = || late("FoodPlate_01_1 in TableRound_02_1", "Bowl_01_1");
+    let apple = || late("Apple_1 in FoodPlate_01_1", "CoffeeMug_Boss_1");
+    for waiting in [[plate(), apple()], [apple(), plate()]] {
+        let others = ["Bowl_01_1 in TableRound_02_1", "CoffeeMug_Boss_1 in TableRound_02_1"];
+        let mut mission = mission(RoomId::BREAK_ROOM, &[&[TABLE][..], &others[..]].concat());
+        mission.objects.extend(waiting);
+        let mut player = play(mission);
+        player.must(&["goto Bowl_01_1", "pickup Bowl_01_1", "wait 2"]);
+        assert!(player.world.find("FoodPlate_01_1").is_some() && player.world.find("Apple_1").is_none());
+        player.must(&["place TableRound_02_1", "goto CoffeeMug_Boss_1", "pickup CoffeeMug_Boss_1", "wait 2"]);
+        assert_eq!(inside(&player, "Apple_1").as_deref(), Some("FoodPlate_01_1"));
+    }
 }
 
 #[test]

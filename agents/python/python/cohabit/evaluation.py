@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -110,7 +111,8 @@ def evaluate(
     :param seed: episode ``i`` begins with ``seed + i``.
     :param num_envs: worlds that are played beside each other.
     :param record: a folder for ``episodes.jsonl``: what came of each episode, with its actions, which repeat it to the bit in a
-        :class:`cohabit.Env` that is reset with its mission and its seed.
+        :class:`cohabit.Env` that is reset with its mission and its seed. Until all are played it is ``episodes.jsonl.part``, and
+        stays that where the policy fails.
     :param arguments: those of :class:`cohabit.VectorEnv`.
     """
     if not callable(policy):
@@ -122,17 +124,32 @@ def evaluate(
     worlds = min(count, num_envs or cores())
     envs = VectorEnv(suite[0], worlds, autoreset_mode="Disabled", world=suite.world, **arguments)
     done: list[Episode] = []
-    for first in range(0, count, worlds):
-        numbers = range(first, min(first + worlds, count))
-        done += _play(envs, policy, [suite[number % len(suite)] for number in numbers], seed + first)
-    envs.close()
-    result = Evaluation(tuple(done))
-    if record is not None:
-        folder = Path(record)
-        folder.mkdir(parents=True, exist_ok=True)
-        lines = [json.dumps(asdict(episode)) for episode in result.episodes]
-        (folder / "episodes.jsonl").write_text("".join(f"{line}\n" for line in lines))
-    return result
+    with contextlib.closing(envs), _taking_down(record) as take_down:
+        for first in range(0, count, worlds):
+            numbers = range(first, min(first + worlds, count))
+            played = _play(envs, policy, [suite[number % len(suite)] for number in numbers], seed + first)
+            take_down(played)
+            done += played
+    return Evaluation(tuple(done))
+
+
+@contextlib.contextmanager
+def _taking_down(record: Union[None, str, os.PathLike[str]]) -> Iterator[Callable[[Sequence[Episode]], None]]:
+    """Writes episodes into a folder as they end: that it cannot be written shows before hours of play, and what was played stays."""
+    if record is None:
+        yield lambda episodes: None
+        return
+    folder = Path(record)
+    folder.mkdir(parents=True, exist_ok=True)
+    part = folder / "episodes.jsonl.part"
+    with part.open("w") as out:
+
+        def take_down(episodes: Sequence[Episode]) -> None:
+            out.writelines(f"{json.dumps(asdict(episode))}\n" for episode in episodes)
+            out.flush()
+
+        yield take_down
+    part.replace(folder / "episodes.jsonl")
 
 
 def _play(envs: VectorEnv, policy: Policy, missions: Sequence[Mission], seed: int) -> list[Episode]:

@@ -25,6 +25,7 @@ A panorama's planes have four pictures, ``[4, H, W, …]``: ahead, right, back, 
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import time
@@ -236,8 +237,8 @@ class Office:
         self.planes, self.slots, self.fill = self.sensing.planes, slots, self.sensing.fill
         self.knows = knows
         self._session_camera = camera if session is not None else None
-        self._mission = mission
-        first = mission[0] if isinstance(mission, Suite) else mission
+        self._mission = as_it_is(mission)
+        first = self._mission[0] if isinstance(self._mission, Suite) else self._mission
         self._played: Played = (first, None, None)
         self._randomize = randomize
         self._has_begun = False
@@ -311,7 +312,8 @@ class Office:
         """The mission, layout and seed of the next episode."""
         if (unknown := self.unknown_option(options)) is not None:
             raise ValueError(unknown)
-        mission, layout, seed = options.get("mission", self._mission), options.get("layout"), options.get("seed")
+        mission = as_it_is(options["mission"]) if "mission" in options else self._mission
+        layout, seed = options.get("layout"), options.get("seed")
         if isinstance(mission, Suite):
             mission = mission.sample(episode)
         if layout is not None and not isinstance(layout, str):
@@ -394,6 +396,11 @@ def packs_of(mission: MissionLike, world: Packs) -> list[str]:
     """The folders of the world packs that a mission is played with: those that are given, else those of its suite."""
     folders = world_folders(world)
     return list(mission.world) if isinstance(mission, Suite) and not folders else folders
+
+
+def as_it_is(mission: MissionLike) -> MissionLike:
+    """A mission as it is now: whoever gave a dictionary may change it, and give it again."""
+    return copy.deepcopy(dict(mission)) if isinstance(mission, Mapping) else mission
 
 
 def mission_text(

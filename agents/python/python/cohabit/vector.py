@@ -15,7 +15,17 @@ from gymnasium.vector.utils import batch_space
 from . import _native
 from .actions import Action, Known, Names
 from .missions import Suite, World, cores
-from .office import OPTIONS, MissionLike, Observation, check_knows, check_steps, instruction_in, mission_text, packs_of
+from .office import (
+    OPTIONS,
+    MissionLike,
+    Observation,
+    as_it_is,
+    check_knows,
+    check_steps,
+    instruction_in,
+    mission_text,
+    packs_of,
+)
 from .sensing import CHOICES, Sensing, checked_actions, observable, sample_actions
 
 Step = tuple[Observation, npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], dict[str, Any]]
@@ -90,8 +100,9 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         """The ids of all rooms, by their numbers: ``cohabit.ROOMS``, then those of world packs."""
         sensing = Sensing(planes, camera, size, slots, fill, instruction, len(self.classes), len(self.rooms))
         self.knows = knows
-        self._mission, self._randomize = mission, randomize
-        self._played: list[MissionLike] = [mission[0] if isinstance(mission, Suite) else mission] * num_envs
+        self._mission, self._randomize = as_it_is(mission), randomize
+        first = self._mission[0] if isinstance(self._mission, Suite) else self._mission
+        self._played: list[MissionLike] = [first] * num_envs
         self._changed = [False] * num_envs
         """Whether a world plays a mission on another layout or with another seed, for one episode; or was to begin, and may not have."""
         self._coming = [False] * num_envs
@@ -156,6 +167,7 @@ class VectorEnv(_Base[Observation, npt.NDArray[np.int64], npt.NDArray[Any]]):
         missions = options.pop("mission", self._mission)
         if not isinstance(missions, (list, tuple)):
             missions = [missions] * self.num_envs
+        missions = [as_it_is(mission) for mission in missions]
         if len(missions) != self.num_envs:
             raise ValueError(f"{len(missions)} missions for {self.num_envs} environments: one for each")
         chosen = [place for place in range(self.num_envs) if mask[place]]

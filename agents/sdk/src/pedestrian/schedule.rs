@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cohabit_cdf::{Catalog, RoomId};
+use cohabit_cdf::{Catalog, Layout, RoomId};
 use serde::Deserialize;
 
 use crate::agent::TICKS_PER_SECOND;
@@ -24,6 +24,8 @@ pub struct Schedule {
 /// One thing that a person does.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Entry {
+    /// Its number in the file, from 1.
+    pub number: usize,
     /// The first tick of it, counted from the beginning of the round.
     pub not_before: u64,
     pub errand: Errand,
@@ -126,7 +128,7 @@ impl Schedule {
                 let remedy = "repeat = true belongs to the last entry of a person";
                 return Err(wrong(format!("person {person} begins again before it: {remedy}")));
             }
-            own.push(Entry::of(&written, catalog).map_err(wrong)?);
+            own.push(Entry::of(index + 1, &written, catalog).map_err(wrong)?);
         }
         Ok(Self { entries })
     }
@@ -149,14 +151,47 @@ impl Schedule {
         all
     }
 
+    /// What is wrong with the first entry that leads to no place of a floor plan; nothing, if all lead to one.
+    #[must_use]
+    pub fn misplaced(&self, layout: &Layout) -> Option<String> {
+        let all = self.entries.values().flatten();
+        let wrong = all.filter_map(|entry| match entry.errand {
+            Errand::GoTo(place) => Some((entry.number, place.fault(layout)?)),
+            Errand::Stay(_) | Errand::Meet(_) => None,
+        });
+        let (number, fault) = wrong.min_by_key(|(number, _)| *number)?;
+        Some(format!("entry {number}: {fault}"))
+    }
+
     /// What one of them does.
     pub(crate) fn entries(&self, person: u32) -> &[Entry] {
         self.entries.get(&person).map_or(&[], Vec::as_slice)
     }
 }
 
+impl Place {
+    /// Why nobody can go there on a floor plan; nothing, if it is a place of that.
+    fn fault(self, layout: &Layout) -> Option<String> {
+        let plan = &layout.id;
+        match self {
+            Self::Room(room) | Self::Viewpoint(room, _) => layout.room(room).is_none().then(|| {
+                let rooms = layout.rooms.iter().map(|room| room.id.id()).collect::<Vec<_>>().join(", ");
+                format!("the floor plan {plan} has no room {}: write one of its own ({rooms})", room.id())
+            }),
+            Self::Point([x, y]) => {
+                let [west, south, east, north] = layout.bounds_m();
+                let is_within = (west..=east).contains(&x) && (south..=north).contains(&y);
+                (!is_within).then(|| {
+                    let reach = format!("{west} to {east} along x, and from {south} to {north} along y");
+                    format!("{x} {y} is outside of the floor plan {plan}: write a point from {reach}")
+                })
+            }
+        }
+    }
+}
+
 impl Entry {
-    fn of(written: &WrittenEntry, catalog: &Catalog) -> Result<Self, String> {
+    fn of(number: usize, written: &WrittenEntry, catalog: &Catalog) -> Result<Self, String> {
         let errand = match (&written.go_to, written.stay_s, written.meet) {
             (Some(place), None, None) => Errand::GoTo(place_of(place, catalog)?),
             (None, Some(stay_s), None) => Errand::Stay(ticks("stay_s", stay_s)?),
@@ -166,7 +201,7 @@ impl Entry {
             (None, None, Some(other)) => Errand::Meet(other),
             _ => return Err("write one of go_to, stay_s and meet, such as go_to = \"BreakRoom\"".to_owned()),
         };
-        Ok(Self { not_before: ticks("at_s", written.at_s)?, errand, repeat: written.repeat })
+        Ok(Self { number, not_before: ticks("at_s", written.at_s)?, errand, repeat: written.repeat })
     }
 }
 

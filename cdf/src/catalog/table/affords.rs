@@ -1,7 +1,7 @@
 //! What classes of things afford, whatever state they are in.
 
-use super::{ActionKind, ActionTable, ClassPattern, Condition, Need, Term, Test, takes};
-use crate::catalog::ObjectClass;
+use super::{ActionKind, ActionTable, Change, ClassPattern, Condition, Effect, Need, Term, Test, takes};
+use crate::{catalog::ObjectClass, state::StateFlag};
 
 impl ActionTable {
     /// What has to be in a machine of that class before it can be worked; of each part any of its classes will do.
@@ -27,6 +27,33 @@ impl ActionTable {
             let may_count = rule.when.iter().all(|condition| classes.holds(condition) != Some(false));
             may_count && rule.needs.iter().chain(device_needs).all(|need| classes.may_meet(need))
         })
+    }
+
+    /// Whether some rule, press or work may make a state of a thing of a class true, as far as classes decide that.
+    #[must_use]
+    pub fn may_set(&self, flag: StateFlag, class: &ObjectClass) -> bool {
+        let rules = self.rules().iter().map(|rule| (&rule.when[..], &rule.effects));
+        let presses = self.devices().iter().map(|device| &device.press);
+        let works = self.works().iter().flat_map(|work| [&work.effects, &work.then]);
+        let all = rules.chain(presses.chain(works).map(|effects| (&[][..], effects)));
+        all.flat_map(|(when, effects)| effects.iter().map(move |effect| (when, effect)))
+            .any(|(when, effect)| effect.may_set(flag, class, when))
+    }
+}
+
+impl Effect {
+    /// Whether it may make a state of a thing of a class true, where it follows only if these conditions hold, too.
+    fn may_set(&self, flag: StateFlag, class: &ObjectClass, when: &[Condition]) -> bool {
+        let may_be = |term: Term| {
+            let own = self.when.iter().chain(when).filter(|condition| condition.term == term);
+            own.into_iter().all(|condition| match &condition.test {
+                Test::Affords(property) => class.has(*property) != condition.negated,
+                Test::IsA(pattern) => pattern.matches(&class.id) != condition.negated,
+                _ => true,
+            })
+        };
+        let sets = |change: &Change| matches!(change, Change::Set(term, set, true) if *set == flag && may_be(*term));
+        self.changes.iter().any(sets)
     }
 }
 

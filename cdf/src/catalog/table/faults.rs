@@ -79,6 +79,10 @@ impl ActionTable {
             }
             let named = [&device.work, &device.shut_work].into_iter().flatten().map(String::as_str);
             faults.extend(named.filter(|work| !works.contains(work)).map(|work| no_work(name, work)));
+            if let Some(work) = device.work.as_ref().filter(|_| !device.runs_for_a_moment()) {
+                let (file, device, work) = (file.to_owned(), name.to_owned(), work.clone());
+                faults.push(TableError::NotBegun { file, device, work });
+            }
         }
         let power_work = self.power_work.as_deref().filter(|work| !works.contains(work));
         faults.extend(power_work.map(|work| no_work("power_work", work)));

@@ -17,6 +17,7 @@ use crate::{
     read::{
         phrase::{Phrase, RelationKind},
         question::Question,
+        saying,
     },
     understanding::Understanding,
     words::{intent::Intent, lexicon::StateWord, prose},
@@ -44,6 +45,7 @@ impl Answerer<'_> {
         };
         let meant = if is_placed && is_there() { phrase.clone() } else { bare.clone() };
         match claim {
+            Claim::State(state, words) if meant.is_any => self.any_in_state(&meant, state, words),
             Claim::State(state, words) if meant.is_all || meant.is_many() => self.are_in_state(&meant, state, words),
             Claim::State(state, words) => {
                 self.with_object_that(may_be(state), &meant, |id| self.is_in_state(id, state, words))
@@ -66,6 +68,10 @@ impl Answerer<'_> {
                 };
                 self.told(trouble.is_none() == is_asked, &text, object.id)
             }),
+            // `is it done?`, of nothing that is ever done: what the mission wants.
+            Claim::Done if question.rest.iter().any(|word| word == "done") && self.is_never_done(&meant) => {
+                Understanding::answer(self.goals().reply())
+            }
             Claim::Done => self.with_known(&meant, |object| self.is_done(object)),
             Claim::For => self.with_known(&bare, |object| {
                 if object.works.is_none() {
@@ -131,22 +137,44 @@ impl Answerer<'_> {
 
     /// Whether all of several are in a state, and which are not.
     fn are_in_state(&self, phrase: &Phrase, state: StateWord, words: &[String]) -> Understanding {
-        let Ok(all) = self.ground().all(phrase, &Want::place(Intent::Find, may_be(state), None)) else {
-            return self.unseen(phrase);
-        };
+        let Ok(all) = self.each_meant(phrase, state) else { return self.unseen(phrase) };
         let is_not = |id: &&ObjectId| !self.scene.object(**id).is_some_and(|object| self.is_so(object, state));
         let others: Vec<ObjectId> = all.iter().filter(is_not).copied().collect();
         let (words, named) = (words.join(" "), |ids: &[ObjectId]| {
             prose::list(&ids.iter().take(contents::LIST).map(|id| self.full(*id)).collect::<Vec<_>>(), "and")
         });
         let text = match (others.len(), all.len()) {
-            (0, 1) => return self.is_in_state(all[0], state, &[words]),
+            (_, 1) => return self.is_in_state(all[0], state, &[words]),
             (0, _) => format!("Yes, they are all {words}."),
             (1, _) => format!("No, {} {} not {words}.", named(&others), prose::is(&self.short(others[0]))),
             (count, total) if count == total => format!("No, none of them is {words}."),
             _ => format!("No, {} are not {words}.", named(&others)),
         };
         Understanding::whether(others.is_empty(), text, all)
+    }
+
+    /// Whether any of several is in a state, and which are: `is any plate dirty`.
+    fn any_in_state(&self, phrase: &Phrase, state: StateWord, words: &[String]) -> Understanding {
+        let Ok(all) = self.each_meant(phrase, state) else { return self.unseen(phrase) };
+        let is_in = |id: &ObjectId| self.scene.object(*id).is_some_and(|object| self.is_so(object, state));
+        let found: Vec<ObjectId> = all.iter().copied().filter(is_in).collect();
+        if found.is_empty() {
+            let noun = saying::noun_or_thing(phrase);
+            let text = format!("No, I know of no {noun} that {} {}.", prose::is(noun), words.join(" "));
+            return Understanding::whether(false, text, all);
+        }
+        let named: Vec<String> = found.iter().take(contents::LIST).map(|id| self.full(*id)).collect();
+        Understanding::whether(true, format!("Yes: {}.", prose::list(&named, "and")), found)
+    }
+
+    /// All that are meant, wherever they are: `they` are those that were spoken of together, `both` are those at hand.
+    fn each_meant(&self, phrase: &Phrase, state: StateWord) -> Result<Vec<ObjectId>, Miss> {
+        let (ground, want) = (self.ground(), Want::place(Intent::Find, may_be(state), None));
+        match () {
+            () if phrase.is_many() => ground.plausible(phrase, &want),
+            () if phrase.text.starts_with("both ") => ground.all(phrase, &want),
+            () => ground.everywhere(phrase, &want),
+        }
     }
 
     /// What is in a state here: `is anything broken`.
@@ -229,6 +257,16 @@ impl Answerer<'_> {
             Some(other) => format!("there is {other} in it"),
         };
         self.told(false, &format!("there is no {fills} in {}: {instead}", self.short(id)), id)
+    }
+
+    /// Whether `it` stands for nothing that comes to an end, or for nothing at all.
+    fn is_never_done(&self, phrase: &Phrase) -> bool {
+        let found = self.ground().one(phrase, &Want::place(Intent::Find, &[], None)).ok();
+        let ends = found.and_then(|id| self.scene.object(id)).is_some_and(|object| {
+            let class = self.catalog.class(object.class);
+            [Property::Toggleable, Property::Heatable].into_iter().any(|property| class.has(property))
+        });
+        phrase.is_bare_pronoun() && !ends
     }
 
     /// Whether a machine has run its time, or what is to be warm is so.

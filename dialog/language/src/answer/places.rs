@@ -1,14 +1,18 @@
 //! Answers about where things are, and what is somewhere.
 
-use cohabit_cdf::{ObjectId, Property, RoomId};
+use cohabit_cdf::{ObjectId, Property, RoomId, state::StateFlag};
 
 use crate::{
     answer::{Answerer, NEIGHBOURS},
     ground::{self, want::Want},
     known::{KnownObject, contents, describe, floor, memory},
-    read::phrase::Phrase,
+    read::{phrase::Phrase, saying},
     understanding::Understanding,
-    words::{intent::Intent, lexicon::Side, prose},
+    words::{
+        intent::Intent,
+        lexicon::{Side, StateWord},
+        prose,
+    },
 };
 
 impl Answerer<'_> {
@@ -73,8 +77,27 @@ impl Answerer<'_> {
             _ => self.ground().plausible(phrase, &want),
         };
         let Ok(found) = found else { return self.elsewhere(phrase) };
-        let places: Vec<String> = found.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
-        Understanding::whether(true, prose::sentence(&prose::list(&places, "and")), found)
+        let (fitting, others): (Vec<ObjectId>, Vec<ObjectId>) =
+            found.into_iter().partition(|id| self.is_as_told(phrase, *id));
+        let places = |ids: &[ObjectId]| {
+            let places: Vec<String> = ids.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
+            prose::list(&places, "and")
+        };
+        // `is there a clean plate`, where all are dirty.
+        if fitting.is_empty() {
+            let text = format!("I know of no {}: {}.", saying::noun_or_thing(phrase), places(&others));
+            return Understanding::whether(false, text, others);
+        }
+        Understanding::whether(true, prose::sentence(&places(&fitting)), fitting)
+    }
+
+    /// Whether a thing is in all the states that it was said to be in. What is big is a matter of taste.
+    fn is_as_told(&self, phrase: &Phrase, id: ObjectId) -> bool {
+        let is_so = |state: &StateWord| {
+            matches!(state, StateWord::Flag(StateFlag::Embiggenated, _))
+                || self.scene.object(id).is_some_and(|object| self.is_so(object, *state))
+        };
+        phrase.states.iter().all(is_so)
     }
 
     /// What is not where it was asked for may be known to be somewhere else.
@@ -173,12 +196,14 @@ impl Answerer<'_> {
         }
     }
 
-    /// That nobody has looked into a thing, which is shut, and an offer to.
+    /// That it has not looked into a thing, which is shut, and an offer to.
     fn unopened(&self, id: ObjectId) -> Option<Understanding> {
         let is_shut = self.scene.object(id).is_some_and(|object| memory::is_shut(self.catalog, object));
         let the = self.short(id);
         let text = format!("{} I have not looked into it yet. Shall I?", prose::sentence(&format!("{the} is closed")));
-        (is_shut && self.scene.floor.is_some()).then(|| crate::say::ask::confirmation(text))
+        // Who has opened it knows what was in it.
+        let has_looked = self.context.deeds.did(Intent::Open, id);
+        (is_shut && !has_looked && self.scene.floor.is_some()).then(|| crate::say::ask::confirmation(text))
     }
 
     /// What is next to a thing, the nearest first.

@@ -20,7 +20,12 @@ impl Answerer<'_> {
 
     pub(crate) fn whether_holding(&self, phrase: &Phrase) -> Understanding {
         let Some(held) = self.scene.robot.held else { return empty_handed("No, my hand is empty.") };
-        let is_it = self.ground().narrow(phrase, &[held]) == [held];
+        // `do you have it`: what was spoken of.
+        let is_it = if phrase.is_bare_pronoun() {
+            self.ground().one(phrase, &Want::place(Intent::Find, &[], None)) == Ok(held)
+        } else {
+            self.ground().narrow(phrase, &[held]) == [held]
+        };
         let start = if is_it { "Yes" } else { "No" };
         Understanding::whether(is_it, format!("{start}, I am holding {}.", self.short(held)), Vec::new())
     }

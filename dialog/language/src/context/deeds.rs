@@ -139,24 +139,19 @@ impl Deeds {
         self.0.iter().rev().find(|deed| deed.step.object() == Some(id))
     }
 
-    /// What it did with this thing for the last request that was about it, in words; nothing, where it did nothing with it.
+    /// What it did with this thing for the last request that was about it, in words, with what came in between: what a machine does to it
+    /// is told so. Nothing, where it did nothing with it.
     pub(crate) fn told_of(&self, id: ObjectId) -> Option<String> {
-        let last = self.0.iter().rposition(|deed| deed.step.object() == Some(id))?;
-        let put_away = |deed: &&Deed| matches!(deed.step.action, Action::Place { .. });
-        let later = &self.0[last + 1..];
-        let until =
-            later.iter().position(|deed| deed.step.action == Action::PickUp { object: id }).unwrap_or(later.len());
-        let put = later[..until].iter().find(put_away).filter(|_| self.is_taken(last, id));
-        let first = self.0[..last]
-            .iter()
-            .rposition(|deed| deed.step.object() == Some(id) && deed.reason == self.0[last].reason);
-        let of_it = first.into_iter().chain([last]).map(|at| &self.0[at]).chain(put);
-        Some(format!("I {}", listed(of_it, TOLD)))
-    }
-
-    /// Whether this thing was in the hand after that deed.
-    fn is_taken(&self, at: usize, id: ObjectId) -> bool {
-        held_after(&self.0[..=at]) == Some(id)
+        let is_of_it = |deed: &Deed| deed.step.object() == Some(id) || self.is_done_to(deed, id);
+        let last = self.0.iter().rposition(is_of_it)?;
+        let reason = &self.0[last].reason;
+        let begun = self.0[..last].iter().rposition(|deed| deed.reason != *reason).map_or(0, |before| before + 1);
+        let first = (begun..last).find(|at| is_of_it(&self.0[*at])).unwrap_or(last);
+        // What was in the hand by then was taken for an earlier request.
+        let takes_it = |deed: &Deed| deed.step.action == Action::PickUp { object: id };
+        let is_held = self.held_before(&self.0[first]) == Some(id);
+        let taken = self.0[..first].iter().rposition(takes_it).filter(|_| is_held);
+        Some(format!("I {}", listed(self.0[taken.unwrap_or(first)..=last].iter(), TOLD)))
     }
 
     /// Whether a deed was done to this thing, or with it in the hand.

@@ -168,6 +168,11 @@ impl Memory {
         if let Action::Interact { verb: Verb::Open, .. } = action {
             world.contents(target.id).for_each(|inside| self.learn(inside, true));
         }
+        // What a machine did to what it holds behind its door, its table says: the shirt is clean that it washed.
+        let is_kept =
+            |inside: &&KnownObject| self.things.get(&inside.id).is_some_and(|thing| thing.parent == Some(target.id));
+        let kept: Vec<&KnownObject> = world.contents(target.id).filter(is_kept).collect();
+        kept.into_iter().for_each(|inside| self.learn(inside, false));
         let worked = target.works.filter(|worked| self.things.contains_key(worked));
         if let Some(worked) = worked.and_then(|worked| world.object(worked)) {
             self.learn(worked, false);

@@ -1,11 +1,12 @@
 //! What a question asks for, and what it is about.
 
+use cohabit_cdf::state::StateFlag;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     read::{phrase::Phrase, reader::Reader, segments},
     words::{
-        lexicon::{Lexicon, Preposition, Pronoun},
+        lexicon::{Lexicon, Preposition, Pronoun, StateWord},
         question_kind::{QuestionKind, Shape},
         table::PhraseTable,
         token,
@@ -126,6 +127,8 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     if kind == QuestionKind::Count {
         rest = without_existence(&rest);
     }
+    // `are the lights off`: all of them.
+    let is_of_several = kind == QuestionKind::State && matches!(first[start - 1].as_str(), "are" | "were");
     let kind = told_by_words(&rest, kind);
     let first = || at_start(lexicon, &rest);
     let about = match kind {
@@ -138,7 +141,11 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
             works.or_else(first_said).or_else(|| named(lexicon, &rest)).or_else(|| owner(&rest)).or_else(first)
         }
     };
-    Some(Question::new(kind, about, rest))
+    let with_all = |phrase: Phrase| {
+        let is_named = !phrase.namings.is_empty() && phrase.side.is_none() && phrase.ordinal.is_none();
+        Phrase { is_all: phrase.is_all || is_of_several && is_named, ..phrase }
+    };
+    Some(Question::new(kind, about.map(with_all), rest))
 }
 
 /// The question that words ask by their shape.
@@ -204,7 +211,8 @@ fn which_seen(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
 
 /// `mug is red`, `one is the biggest`: the red mug.
 fn which_is_so(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    if let Some(phrase) = which_works(lexicon, words).or_else(|| which_seen(lexicon, words)) {
+    let phrase = which_works(lexicon, words).or_else(|| which_seen(lexicon, words));
+    if let Some(phrase) = phrase.or_else(|| which_is_switched(lexicon, words)) {
         return Some(phrase);
     }
     // `mug has coffee in it`: the mug with coffee in it.
@@ -221,6 +229,22 @@ fn which_is_so(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
     let phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
     let is_told = phrase.color.is_some() || !phrase.states.is_empty() || phrase.side.is_some();
     (reader.is_done() && is_told).then_some(phrase)
+}
+
+/// `lights are still on`: the lights that are switched on.
+fn which_is_switched(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
+    let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
+    let said = lexicon.yes_no.without_fillers(&words[verb + 1..]);
+    let said = said.strip_prefix(&["still".to_owned()]).unwrap_or(said);
+    let is_on = match said {
+        [word] if word == "on" => true,
+        [word] if word == "off" => false,
+        _ => return None,
+    };
+    let mut reader = Reader::new(lexicon, &words[..verb]);
+    let mut phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
+    phrase.states.push(StateWord::Flag(StateFlag::Toggled, is_on));
+    reader.is_done().then_some(phrase)
 }
 
 /// `mugs there are on the table`, of `how many`: the mugs on the table.

@@ -107,15 +107,41 @@ impl Conversation<'_> {
                 || self.answered_first(words, open, &mut context.clone()).is_some())
     }
 
-    /// What is to be done if an answer comes first, and then remarks, or what else is to be done: `the robot one, like I said`.
+    /// What is to be done if an answer comes before remarks, or before what else is to be done, or behind a remark: `the robot one, like I said`,
+    /// `what a mouthful! the last one`.
     pub(crate) fn answered_first(
         &self,
         words: &[String],
         pending: Option<&Pending>,
         context: &mut Context,
     ) -> Option<Understanding> {
-        let end = words.iter().position(|word| token::is_punctuation(word)).filter(|end| *end > 0)?;
-        let (first, rest) = words.split_at(end);
+        let mut from = 0;
+        while from < words.len() {
+            let mark = words[from..].iter().position(|word| token::is_punctuation(word)).map(|at| from + at);
+            let end = mark.unwrap_or(words.len());
+            let said = &words[from..end];
+            let is_all = from == 0 && mark.is_none();
+            // `a light bulb? open the fridge`: who asks back chooses nothing.
+            let is_echo = words.get(end).is_some_and(|mark| mark == "?") && end + 1 < words.len();
+            if !said.is_empty() && !is_all && !is_echo {
+                let answered = self.answered_by(said, &words[end..], pending, context);
+                if answered.is_some() || self.asks_for_more_than_agreed(said) {
+                    return answered;
+                }
+            }
+            from = end + 1;
+        }
+        None
+    }
+
+    /// The same where `first` answers, and `rest` follows.
+    fn answered_by(
+        &self,
+        first: &[String],
+        rest: &[String],
+        pending: Option<&Pending>,
+        context: &mut Context,
+    ) -> Option<Understanding> {
         let mut then = Context { pending: pending.cloned(), later: Vec::new(), ..context.clone() };
         let understanding = match pending? {
             Pending::Lab { words: before, at } => {

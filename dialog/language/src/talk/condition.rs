@@ -2,6 +2,8 @@
 //!
 //! What does not hold is not carried out, and said so; where the condition cannot be told, the robot asks.
 
+use cohabit_cdf::Property;
+
 use crate::{
     answer::claim,
     context::{Context, Pending},
@@ -254,7 +256,8 @@ impl Conversation<'_> {
             let are = ["are", "you", "holding"].map(str::to_owned);
             return Some(([are.as_slice(), &condition[length..]].concat(), is_negated));
         }
-        let named = || self.named_in(request);
+        let says_done = self.lexicon.yes_no.says_done(&condition);
+        let named = || self.named_in(request, says_done);
         let copula = condition.iter().position(|word| words.copulas.contains(word));
         let (subject, verb, rest) = match copula {
             Some(0) | None => (named()?, "is".to_owned(), condition[copula.map_or(0, |at| at + 1)..].to_vec()),
@@ -271,11 +274,19 @@ impl Conversation<'_> {
         Some(([vec![verb], subject, rest].concat(), is_negated))
     }
 
-    /// What a request is about, in its own words.
-    fn named_in(&self, request: &[String]) -> Option<Vec<String>> {
+    /// What a request is about, in its own words; where `it` is to be done by then, only what is ever done: not the shirt of
+    /// `when it is done, take out the shirt`.
+    fn named_in(&self, request: &[String], says_done: bool) -> Option<Vec<String>> {
+        const DONE: [Property; 3] = [Property::Toggleable, Property::Eatable, Property::Cookable];
         let clauses = self.clauses(request);
-        let phrase =
-            clauses.first()?.objects.first().filter(|phrase| phrase.pronoun.is_none() && !phrase.text.is_empty())?;
+        let is_ever_done = |phrase: &Phrase| {
+            let mut classes = phrase.namings.iter().map(|naming| self.catalog.class(naming.class));
+            phrase.fluid.is_some() || classes.any(|class| DONE.into_iter().any(|property| class.has(property)))
+        };
+        let is_named = |phrase: &&Phrase| {
+            phrase.pronoun.is_none() && !phrase.text.is_empty() && (!says_done || is_ever_done(phrase))
+        };
+        let phrase = clauses.first()?.objects.first().filter(is_named)?;
         let the = phrase.text.split(' ').map(str::to_owned);
         Some(std::iter::once("the".to_owned()).chain(the.filter(|word| word != "the" && word != "a")).collect())
     }

@@ -100,11 +100,11 @@ impl Conversation<'_> {
         Ok((n_best, evidence))
     }
 
-    /// Whether a way by this text is to do the same as another one with things that were not seen yet.
+    /// Whether a way by this text is to do the same as another one, where not all of it is planned yet.
     fn comes_to(&self, other: &Hypothesis, way: &Way, text: &str) -> bool {
-        let are_sought = other.way.context.search.is_some() || way.context.search.is_some();
+        let is_open = |way: &Way| way.context.search.is_some() || !way.context.later.is_empty();
         let are_plans = other.way.steps().is_some() && way.steps().is_some();
-        are_sought && are_plans && self.asks_the_same(&other.text, text)
+        are_plans && (is_open(&other.way) || is_open(way)) && self.asks_the_same(&other.text, text)
     }
 
     /// What the rewriter wrote, without what it cannot know, and what else may be meant by that.

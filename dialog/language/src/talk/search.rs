@@ -225,7 +225,12 @@ impl Conversation<'_> {
             classes.extend(named.map(|(id, _)| id));
         }
         if classes.is_empty() {
-            return None;
+            // `the blue thing in the basket`: the basket first.
+            let is_unseen = |to: &&Phrase| {
+                let classes = classes_of(to);
+                !classes.is_empty() && !self.scene.objects.iter().any(|object| classes.contains(&object.class))
+            };
+            return self.target_of(phrase.relations.iter().map(|relation| &relation.to).find(is_unseen)?);
         }
         let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
         let mut target = self.target(saying::said(phrase), classes, room);

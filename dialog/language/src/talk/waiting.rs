@@ -237,7 +237,8 @@ impl Conversation<'_> {
     fn can_watch(&self, claim: &[String], request: &[String], context: &Context) -> bool {
         let Some((question, _)) = self.question_of(claim, request) else { return false };
         let answer = self.answerer(context, 0).answer(&question);
-        let Understanding::Answer { highlight, .. } = answer else { return false };
+        // What it cannot tell it would not see either.
+        let Understanding::Answer { highlight, holds: Some(_), .. } = answer else { return false };
         let is_seen = |id: &ObjectId| {
             let is_held = self.scene.robot.held == Some(*id);
             is_held || self.scene.object(*id).is_some_and(|object| object.visible && !object.is_hidden)
@@ -247,9 +248,21 @@ impl Conversation<'_> {
 
     /// A claim that the robot can tell.
     fn claim(&self, words: &[String], request: &[String]) -> Option<Vec<String>> {
+        let words = self.with_copula(words);
         // `the mug is full you bring it to me` goes on with the request.
         let goes_on = |at: usize| self.lexicon.verbs.longest(&words[at..]).is_some() && self.is_request(&words[at..]);
-        let is_claim = !(1..words.len()).any(goes_on) && self.question_of(words, request).is_some();
-        is_claim.then(|| words.to_vec())
+        let is_claim = !(1..words.len()).any(goes_on) && self.question_of(&words, request).is_some();
+        is_claim.then_some(words)
+    }
+
+    /// `its done`, which has lost its apostrophe: `it is done`; but not `its door is open`.
+    fn with_copula(&self, words: &[String]) -> Vec<String> {
+        match words {
+            [its, rest @ ..] if its == "its" && !rest.iter().any(|word| self.lexicon.ifs.copulas.contains(word)) => {
+                let it_is = ["it", "is"].map(str::to_owned);
+                it_is.into_iter().chain(rest.iter().cloned()).collect()
+            }
+            _ => words.to_vec(),
+        }
     }
 }

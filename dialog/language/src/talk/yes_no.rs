@@ -5,14 +5,14 @@ use cohabit_cdf::{ObjectId, Property, RoomId, state::StateFlag};
 use crate::{
     answer::claim::asked_state,
     context::Context,
-    ground::want::Want,
-    known::describe,
-    plan::settle,
+    ground::want::{Miss, Want},
+    known::{contents, describe},
+    plan::settle::{self, Settled},
     read::{
         chatter,
         clause::{Clause, Part},
         parts,
-        phrase::Place,
+        phrase::{Phrase, Place},
         question::{self, Question},
         whether,
     },
@@ -93,25 +93,21 @@ impl Conversation<'_> {
             return Some(self.whether_been(room, context));
         }
         let settled = settle::settle(&self.planner(context.focus.clone()), &clause);
+        let is_group = |phrase: &Phrase| phrase.is_many() && context.focus.group.len() > 1;
+        let is_several =
+            settled.objects.len() > 1 || settled.objects.iter().any(|phrase| phrase.is_all || is_group(phrase));
+        if is_several && clause.intent != Intent::Find {
+            return self.whether_each_done(&clause, &settled, context);
+        }
         let phrase = settled.objects.first()?;
         let ground = self.ground(&context.focus);
-        // `did you throw it away` is of what was carried, not of where it went.
-        let is_carried =
-            matches!(clause.intent, Intent::Place | Intent::Drop | Intent::Bring | Intent::Throw | Intent::Discard);
-        let affordances: &[Property] = if is_carried { &[Property::Pickupable] } else { &[] };
-        let want = Want::place(Intent::Find, affordances, None);
+        let want = Want::place(Intent::Find, affordances_of(clause.intent), None);
         let last = phrase.is_bare_pronoun().then(|| context.deeds.last_done_to(clause.intent)).flatten();
         let Ok(id) = last.map_or_else(|| ground.one(phrase, &want), Ok) else {
             let is_search = clause.intent == Intent::Find && !phrase.is_empty();
             return is_search.then(|| Understanding::whether(false, "No, I have not found it yet.", Vec::new()));
         };
-        // `did you put the milk in the fridge`, of milk that it put on the table
-        let there = settled.goal.as_ref().filter(|_| clause.intent == Intent::Place).and_then(|goal| {
-            let (Preposition::In | Preposition::On, Place::Object(place)) = (goal.preposition, &goal.place) else {
-                return None;
-            };
-            ground.one(place, &Want::place(Intent::Find, &[], Some(id))).ok()
-        });
+        let there = self.place_asked_about(&settled, Some(id), context);
         context.focus.mention(id);
         let place = self.answerer(context, 0).place_sentence(id);
         if clause.intent == Intent::Find {
@@ -121,15 +117,7 @@ impl Conversation<'_> {
         let is_so = |(flag, expected, _): &(StateFlag, bool, _)| {
             self.scene.object(id).is_some_and(|object| object.has(*flag)) == *expected
         };
-        let is_discarded = matches!(clause.intent, Intent::Discard | Intent::Throw) && self.is_in_bin(id);
-        let did = match there {
-            Some(place) => context.deeds.did_put(id, place),
-            None => {
-                context.deeds.did(clause.intent, id)
-                    || is_discarded && context.deeds.to(id).is_some()
-                    || state.as_ref().is_none_or(is_so) && context.deeds.had_done(clause.intent, id)
-            }
-        };
+        let did = self.has_done(&clause, id, there, context);
         let stated = state.map(|state| {
             let (_, expected, states) = state;
             let the = describe::short(self.catalog, self.scene, id);
@@ -146,6 +134,68 @@ impl Conversation<'_> {
             (false, None) => format!("No, not that I remember: {place}."),
         };
         Some(Understanding::whether(did, text, vec![id]))
+    }
+
+    /// `did you wash the plate and the cup`: whether it did so to each of them, or which of them it left out.
+    fn whether_each_done(&self, clause: &Clause, settled: &Settled, context: &Context) -> Option<Understanding> {
+        let ground = self.ground(&context.focus);
+        let want = Want::place(Intent::Find, affordances_of(clause.intent), None);
+        let mut asked: Vec<ObjectId> = Vec::new();
+        for phrase in &settled.objects {
+            let found = match ground.one(phrase, &want) {
+                _ if phrase.is_all => ground.all(phrase, &want),
+                _ if phrase.is_many() => ground.plausible(phrase, &want),
+                Err(Miss::Several(ids)) => Ok(ids.into_iter().take(1).collect()),
+                found => found.map(|id| vec![id]),
+            };
+            asked.extend(found.ok()?);
+        }
+        let there = self.place_asked_about(settled, None, context);
+        let state = state_after(clause);
+        // What is so already was not left out.
+        let is_so = |id: &ObjectId| {
+            self.scene.object(*id).is_some_and(|object| match (there, state) {
+                (Some(place), _) => object.parent == Some(place),
+                (None, Some((flag, expected, _))) => object.has(flag) == expected,
+                (None, None) => false,
+            })
+        };
+        let (done, others): (Vec<ObjectId>, Vec<ObjectId>) =
+            asked.into_iter().partition(|id| self.has_done(clause, *id, there, context));
+        let left: Vec<ObjectId> = others.into_iter().filter(|id| !is_so(id)).collect();
+        let listed = |ids: &[ObjectId]| {
+            let names = ids.iter().take(contents::LIST).map(|id| describe::full(self.catalog, self.scene, *id));
+            prose::list(&names.collect::<Vec<_>>(), "and")
+        };
+        if done.is_empty() {
+            return Some(Understanding::whether(false, "No, not that I remember.", left));
+        }
+        Some(match left.is_empty() {
+            true => Understanding::whether(true, format!("Yes, I did: {}.", listed(&done)), done),
+            false => Understanding::whether(false, format!("No, I left out {}.", listed(&left)), left),
+        })
+    }
+
+    /// Where it is asked whether something was put, of `did you put the milk in the fridge`, where that was milk that it put on the table.
+    fn place_asked_about(&self, settled: &Settled, thing: Option<ObjectId>, context: &Context) -> Option<ObjectId> {
+        let goal = settled.goal.as_ref().filter(|_| settled.intent == Intent::Place)?;
+        let (Preposition::In | Preposition::On, Place::Object(place)) = (goal.preposition, &goal.place) else {
+            return None;
+        };
+        self.ground(&context.focus).one(place, &Want::place(Intent::Find, &[], thing)).ok()
+    }
+
+    /// Whether it did that to a thing, as it remembers, or put it there, where a place was named.
+    fn has_done(&self, clause: &Clause, id: ObjectId, there: Option<ObjectId>, context: &Context) -> bool {
+        if let Some(place) = there {
+            return context.deeds.did_put(id, place);
+        }
+        let is_discarded = matches!(clause.intent, Intent::Discard | Intent::Throw) && self.is_in_bin(id);
+        let is_so = state_after(clause)
+            .is_none_or(|(flag, expected, _)| self.scene.object(id).is_some_and(|object| object.has(flag)) == expected);
+        context.deeds.did(clause.intent, id)
+            || is_discarded && context.deeds.to(id).is_some()
+            || is_so && context.deeds.had_done(clause.intent, id)
     }
 
     fn is_in_bin(&self, id: ObjectId) -> bool {
@@ -186,6 +236,14 @@ const fn room_of(place: &Place) -> Option<RoomId> {
     match place {
         Place::Room(room) | Place::Viewpoint(room, _) => Some(room.id),
         _ => None,
+    }
+}
+
+/// What is asked about affords: `did you throw it away` is of what was carried, not of where it went.
+const fn affordances_of(intent: Intent) -> &'static [Property] {
+    match intent {
+        Intent::Place | Intent::Drop | Intent::Bring | Intent::Throw | Intent::Discard => &[Property::Pickupable],
+        _ => &[],
     }
 }
 

@@ -226,12 +226,13 @@ impl Conversation {
         Meaning { understanding: understood, context, unsure: None, open: Some(text.clone()) }
     }
 
-    /// What an interpreter takes for meant that was said in a turn, if it knows, and how it came to that, for the log.
+    /// What an interpreter takes for meant by now that was said in a turn, if it knows, and how it came to that, for the log.
     pub(crate) fn interpreted(
         &mut self,
         turn: u64,
         meant: Option<&Meant>,
         note: &str,
+        now_nanos: u64,
         knowledge: &Knowledge,
     ) -> Vec<Outgoing> {
         let mut outbox = Vec::new();
@@ -240,6 +241,8 @@ impl Conversation {
             return outbox;
         };
         outbox.push(Outgoing::Note { kind: DialogKind::Interpreted, turn, text: note.to_owned() });
+        // Nobody could decide it before: a wizard's time begins now.
+        self.memory.free_since_nanos = now_nanos;
         let mut context = self.memory.context.clone();
         let known = knowledge.known().zip(meant);
         let understood = known.and_then(|(known, meant)| self.language.understand_meant(meant, &known, &mut context));

@@ -282,7 +282,7 @@ impl Conversations {
         note: &str,
     ) -> Result<(), DialogError> {
         let Some(robot) = self.robots.of_body(body) else { return Ok(()) };
-        let items = robot.conversation.interpreted(turn, meant, note, &robot.knowledge);
+        let items = robot.conversation.interpreted(turn, meant, note, monotonic_nanos(), &robot.knowledge);
         if items.is_empty() { Ok(()) } else { self.deliver(body, Heard::Nothing, None, items) }
     }
 

@@ -8,17 +8,12 @@ use std::{
 };
 
 use clap::ValueEnum as _;
-use cohabit_benchmark::{
-    AgentCard, Benchmark, Instruction, Mission, Recording, Recordings, Split, random, recording, recordings,
-};
+use cohabit_benchmark::{AgentCard, Benchmark, Mission, Recording, Recordings, Split, random, recording, recordings};
 use cohabit_dialog::{Asking, Effort, Knows, Language};
-use cohabit_eval::{Answer, Caps, Line, Settings, Task, play, solve};
+use cohabit_eval::{Caps, Line, Settings, Task, play, solve};
 use cohabit_record::Log;
 
 use crate::failure::{bad_input, environment};
-
-/// Questions about one thing that a person answers.
-const MOST_ANSWERS: usize = 2;
 
 /// Who plays, and how.
 #[derive(clap::Args)]
@@ -206,16 +201,12 @@ fn recorded(folder: &Path, benchmark: &Benchmark, missions: &[&Mission]) -> anyh
 
 /// A mission with what is said in it.
 fn task(mission: &Mission) -> Task {
-    let line = |Instruction { text, answer }: &Instruction| {
-        let answer = Answer { question: String::new(), text: answer.clone() };
-        Line::Utterance { text: text.clone(), answers: vec![answer; MOST_ANSWERS] }
-    };
     Task {
         id: mission.id.clone(),
         family: Some(mission.kind.clone()),
         cdf: mission.cdf.to_string(),
         preparation: Vec::new(),
-        script: mission.instructions.iter().map(line).collect(),
+        script: mission.instructions.iter().map(|said| Line::answered(&said.text, &said.answer)).collect(),
     }
 }
 

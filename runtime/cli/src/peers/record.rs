@@ -36,9 +36,15 @@ pub struct Watching {
 }
 
 impl Watching {
-    /// Says what is missing for it, before anything is started.
-    pub fn check(self) -> anyhow::Result<()> {
-        if self.rerun.is_some() { rerun::check() } else { Ok(()) }
+    /// Says what is missing for it, before anything of a session with these packs is started.
+    pub fn check(self, packs: &WorldPacks) -> anyhow::Result<()> {
+        if self.rerun.is_none() {
+            return Ok(());
+        }
+        if !packs.is_empty() {
+            return Err(bad_input("`--rerun` cannot show a session of a world pack yet: leave it out"));
+        }
+        rerun::check()
     }
 
     /// The same as arguments of another process.

@@ -83,6 +83,11 @@ impl FilmOptions {
         self.rate
     }
 
+    /// The video file that is written, if one is.
+    pub fn video(&self) -> Option<&Path> {
+        self.places.video.as_deref()
+    }
+
     /// The film of what `replayer` goes through, if one is wanted.
     pub fn begin(&self, replayer: &Replayer<'_>, rendering: Rendering) -> anyhow::Result<Option<Film>> {
         let Places { frames: folder, video } = &self.places;

@@ -6,7 +6,7 @@ use std::{
 };
 
 use cohabit_record::Log;
-use cohabit_study::{Folder, Journal, Progress, is_practice};
+use cohabit_study::{Folder, Journal, Progress, is_of_excluded, is_practice};
 
 use crate::{failure::bad_input, terminal::shown_lines};
 
@@ -22,20 +22,28 @@ pub fn logs(folder: &Path, progress: &[Progress], with_practice: bool) -> anyhow
     Ok(whole)
 }
 
-/// Those of the logs of a folder that are not of a study's practice: of any folder but that of a study's logs, all.
-pub fn without_practice(folder: &Path, mut logs: Vec<PathBuf>) -> anyhow::Result<Vec<PathBuf>> {
+/// Where the participants are whose sessions' logs a folder holds: nobody, if it is any folder but that of a study's logs.
+pub fn participants_of(folder: &Path) -> anyhow::Result<Vec<Progress>> {
     let path = folder.canonicalize().map_err(|error| bad_input(format!("{}: {error}", folder.display())))?;
-    let Some(study) = path.parent().filter(|study| Folder::study_file(study).is_file()) else { return Ok(logs) };
+    let Some(study) = path.parent().filter(|study| Folder::study_file(study).is_file()) else { return Ok(Vec::new()) };
     let journals = Folder::journals_in(study).map_err(bad_input)?;
     let read =
         journals.iter().map(|path| Journal::read(path).map_err(bad_input)).collect::<anyhow::Result<Vec<_>>>()?;
-    let progress: Vec<Progress> = read.into_iter().flatten().collect();
-    logs.retain(|path| !is_of_practice(path, &progress));
-    Ok(logs)
+    Ok(read.into_iter().flatten().collect())
 }
 
-fn is_of_practice(log: &Path, progress: &[Progress]) -> bool {
-    log.file_stem().and_then(OsStr::to_str).is_some_and(|session| is_practice(progress, session))
+/// Whether a log is of a practice.
+pub fn is_of_practice(log: &Path, progress: &[Progress]) -> bool {
+    session(log).is_some_and(|session| is_practice(progress, session))
+}
+
+/// Whether a log is of somebody whom the experimenter excluded.
+pub fn is_left_out(log: &Path, progress: &[Progress]) -> bool {
+    session(log).is_some_and(|session| is_of_excluded(progress, session))
+}
+
+fn session(log: &Path) -> Option<&str> {
+    log.file_stem().and_then(OsStr::to_str)
 }
 
 /// The files of a folder with that ending, in the order of their names.

@@ -26,6 +26,10 @@ impl Program for Stub {
             "--response-delay-ms=2000",
             "--body=person",
             "--drive=all",
+            "--agent=scripted@0=walk.txt",
+            "--agent=scripted@0=run.txt",
+            "--questionnaire=after.toml",
+            "--questionnaire=tlx",
         ];
         let is_known = |one: &&String| known.contains(&one.as_str());
         let is_alone = |one: &&String| !one.starts_with("--wizard=");
@@ -142,6 +146,7 @@ fn check(name: &str, text: &str) -> Result<Study, String> {
     let _ = scratch.write("sheet.md", "# Robots\n");
     let _ = scratch.write("empty.md", " ");
     let _ = scratch.write("after.toml", "title = 'After'\n[[item]]\nask = 'Why?'\nwords = true");
+    let _ = scratch.write("walk.txt", "loop");
     let path = scratch.write("study.toml", text);
     StudyFile::read(&path).unwrap().check(&Stub).map_err(|error| error.to_string())
 }
@@ -181,6 +186,24 @@ fn a_study_is_read() {
     let asked: Vec<_> = study.questionnaires.iter().map(|one| one.name.as_str()).collect();
     assert_eq!(asked, ["tlx", "after", "sus"]);
     assert_eq!(study.files.keys().collect::<Vec<_>>(), ["after.toml", "sheet.md"]);
+}
+
+#[test]
+fn files_that_settings_name_are_kept_with_the_study() {
+    let with = |setting: &str| {
+        let level = format!("settings = {{ {setting} }}");
+        let study = check("files", &STUDY.replacen("settings = { ask = \"never\" }", &level, 1))?;
+        Ok::<_, String>(study.files.into_keys().collect::<Vec<_>>())
+    };
+    assert_eq!(with("agent = \"scripted@0=walk.txt\"").unwrap(), ["after.toml", "sheet.md", "walk.txt"]);
+    for questionnaire in ["after.toml", "tlx"] {
+        assert_eq!(with(&format!("questionnaire = \"{questionnaire}\"")).unwrap(), ["after.toml", "sheet.md"]);
+    }
+    let said = with("agent = \"scripted@0=run.txt\"").unwrap_err();
+    assert!(
+        said.contains("/factor/0/level/0/settings/agent: `run.txt`") && said.contains("name a file that"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -393,6 +393,28 @@ fn who_is_away_gets_no_session() {
 }
 
 #[test]
+fn a_session_that_was_left_makes_room_and_goes_on_when_its_participant_is_back() {
+    let mut case = Case::new("left");
+    let (first, second) = (case.enrol(), case.enrol());
+    case.apply(first, &Event::GoesOn);
+    case.apply(second, &Event::GoesOn);
+    case.look_after(1);
+    assert_eq!(case.stage.names(), ["P01-01-1"]);
+    let mut stage = case.stage.clone();
+    case.registry().participants.get_mut(&first).unwrap().seen = Instant::now().checked_sub(LEFT_AFTER);
+    for _ in 0..3 {
+        case.registry().look_after(&mut stage, 1);
+    }
+    assert_eq!(case.stage.names(), ["P01-01-1", "P02-01-1"]);
+    assert_eq!(case.phase(first), Phase::At(0, Doing::Queued { again: true }));
+    case.apply(second, &Event::Over { ending: Ending::Stopped });
+    case.look_after(1);
+    case.look_after(1);
+    assert_eq!(case.stage.names()[2], "P01-01-2");
+    assert_eq!(case.stage.before(2), ["P01-01-1.mcap"], "it goes on where they were");
+}
+
+#[test]
 fn a_dead_session_and_a_dead_server_leave_everybody_where_they_were() {
     let mut case = Case::new("dead");
     let place = case.enrol();
@@ -413,6 +435,38 @@ fn a_dead_session_and_a_dead_server_leave_everybody_where_they_were() {
     assert_eq!(case.stage.before(2), ["P01-01-2.mcap", "P01-01-1.mcap"]);
     let progress = &case.registry().participants[&place].progress;
     assert_eq!((progress.plan(), progress.played_s()), (&plan, 12.5));
+}
+
+/// A machine that cannot start sessions.
+struct Lacking;
+
+impl Player for Lacking {
+    fn start(&mut self, _: &Wanted) -> Result<Box<dyn Playing>, String> {
+        Err("no memory is left".to_owned())
+    }
+}
+
+#[test]
+fn sessions_that_cannot_be_started_for_a_while_are_told_and_take_no_mission_along() {
+    let mut case = Case::new("lacking");
+    let place = case.enrol();
+    case.apply(place, &Event::GoesOn);
+    case.look_after(1);
+    case.look_after(1);
+    case.stage.set(0, Look::Gone("signal 9".to_owned()));
+    case.look_after(1);
+    for _ in 0..3 {
+        case.registry().participants.get_mut(&place).unwrap().retry_at = None;
+        case.registry().look_after(&mut Lacking, 1);
+    }
+    let failed = |case: &mut Case| case.registry().overview(1)["participants"][0]["failed"].clone();
+    assert_eq!(failed(&mut case), "no memory is left");
+    let retry_at = case.registry().participants[&place].retry_at.unwrap();
+    assert!(retry_at > Instant::now() + Duration::from_secs(3), "it is not tried every second");
+    case.look_after(1);
+    case.look_after(1);
+    assert_eq!((case.stage.names()[1].as_str(), case.stage.before(1)), ("P01-01-5", vec!["P01-01-1.mcap".to_owned()]));
+    assert!(failed(&mut case).is_null());
 }
 
 #[test]
@@ -450,6 +504,18 @@ fn who_withdraws_while_playing_leaves_nothing_once_the_session_has_ended() {
     case.start_again();
     assert_eq!(case.registry().who(&token), None);
     assert_eq!(case.phase(other), Phase::At(0, Doing::Queued { again: true }));
+}
+
+#[test]
+fn who_is_excluded_is_debriefed_and_may_still_withdraw() {
+    let mut case = Case::new("excluded");
+    case.registry().study.debriefing = Some("The robot was not alone.".to_owned());
+    let place = case.enrol();
+    case.apply(place, &Event::Excluded { reason: "did not listen".to_owned() });
+    let page = case.registry().page(Who::Participant(place));
+    assert!(page["page"] == "excluded" && page["html"].to_string().contains("The robot was not alone."), "{page}");
+    participants_event(case.registry(), place, &Sent { step: None, event: Event::Withdrew }).unwrap();
+    assert_eq!(case.phase(place), Phase::Withdrawn);
 }
 
 #[test]
@@ -505,6 +571,19 @@ factor = [{ name = "ask", kind = "between", level = [
 ] }]
 block = [{ kind = "questionnaire", questionnaires = ["tlx"] }, { kind = "missions" }]
 "#;
+
+#[test]
+fn a_condition_that_could_not_be_written_down_is_assigned_once_it_can_be() {
+    let mut case = Case::of("assigned-late", MINIMISED);
+    let place = case.enrol();
+    let answers = [20, 5, 5, 5, 5, 5].map(|value| Some(Given::Value(value))).to_vec();
+    // As if the disk had been full just after the answers.
+    let answered = Event::Answered { questionnaire: "tlx".to_owned(), answers };
+    case.registry().participants.get_mut(&place).unwrap().progress.step(&answered, 5).unwrap();
+    assert_eq!(case.phase(place), Phase::Assigning);
+    case.look_after(1);
+    assert_eq!(case.phase(place), Phase::At(1, Doing::Ready));
+}
 
 #[test]
 fn a_condition_that_depends_on_answers_is_assigned_when_these_are_there_and_outlasts_a_crash() {

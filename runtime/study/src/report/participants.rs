@@ -1,7 +1,10 @@
 //! Who took part.
 
-use super::{Known, counted, pairs};
-use crate::progress::{Phase, Progress};
+use super::{Known, counted, listed, pairs};
+use crate::{
+    plan::pseudonym,
+    progress::{Phase, Progress},
+};
 
 pub(super) fn section(known: &Known<'_>) -> String {
     let (all, withdrawn) = (&known.records.progress, known.records.withdrawn.len());
@@ -17,6 +20,10 @@ pub(super) fn section(known: &Known<'_>) -> String {
         counted(consented, "participant"),
         if excluded == 1 { "was" } else { "were" },
     );
+    let reasons: Vec<String> = all.iter().filter_map(reason).collect();
+    if !reasons.is_empty() {
+        text += &format!(" Excluded: {}.", listed(&reasons));
+    }
     if let Some(pairs) = pairs::counts(known) {
         text += &format!(" {pairs}");
     }
@@ -25,6 +32,11 @@ pub(super) fn section(known: &Known<'_>) -> String {
     }
     text + " Age, gender, experience, recruitment and pay are not known to the program: **missing, add them** (they may be \
             answers to a questionnaire; see `answers.csv`)."
+}
+
+/// Who was excluded, and why.
+fn reason(one: &Progress) -> Option<String> {
+    Some(format!("{} ({})", pseudonym(one.plan().place), one.exclusion()?))
 }
 
 /// The days of the first consent and the last step.

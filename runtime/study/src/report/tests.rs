@@ -161,6 +161,15 @@ fn a_sheet_counts_what_a_wizard_did_otherwise() {
 }
 
 #[test]
+fn a_sheet_says_why_somebody_was_excluded() {
+    let mut records = records(false);
+    let excluded = Event::Excluded { reason: "phoned meanwhile".to_owned() };
+    records.progress[1].step(&excluded, 1_795_651_200_000).expect("a possible event");
+    let text = report(&records, &Apparatus::default(), &[]);
+    assert!(text.contains("1 was excluded") && text.contains(" Excluded: P02 (phoned meanwhile)."), "{text}");
+}
+
+#[test]
 fn a_sheet_of_a_dry_run_says_so_first() {
     let text = report(&records(true), &Apparatus::default(), &[turns()]);
     assert!(text.starts_with("> **Synthetic data.**"), "{text}");

@@ -28,6 +28,24 @@ fn notes_are_about_somebody_or_about_the_study() {
 }
 
 #[test]
+fn who_is_excluded_is_told_with_the_reason_and_so_are_their_sessions() {
+    let mut progress = Progress::new(Plan { place: 7, ..Plan::default() });
+    let agreed = Event::Consented { version: "1".to_owned(), ticked: Vec::new(), audio: false };
+    let excluded = Event::Excluded { reason: "phoned meanwhile".to_owned() };
+    for event in [Event::Read, agreed, excluded] {
+        progress.step(&event, 0).expect("a possible event");
+    }
+    let all = [progress];
+    assert!(is_of_excluded(&all, "P07-01-1") && is_of_excluded(&all, "pair04-01-1"));
+    assert!(!is_of_excluded(&all, "P08-01-1") && !is_of_excluded(&all, "play-3"));
+    let table = participants(&Study::default(), &all, &["P09".to_owned()]);
+    let column = |name: &str| table.column(name).cloned().collect::<Vec<_>>();
+    let words = |text: &str| Cell::Text(text.to_owned());
+    assert_eq!(column("progress"), [words("excluded"), words("withdrawn")]);
+    assert_eq!(column("excluded_because"), [words("phoned meanwhile"), Cell::Nothing]);
+}
+
+#[test]
 fn practice_is_marked_and_left_out() {
     let mission = |name: &str, is_practice: bool| {
         Step::Mission(PlannedMission {

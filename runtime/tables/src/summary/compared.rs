@@ -28,6 +28,8 @@ pub(crate) struct Compared {
     pub participants: Vec<String>,
     /// Sessions without a participant's name.
     pub unnamed: usize,
+    /// Sessions whose logs do not tell all of them.
+    pub incomplete: usize,
     /// The conditions that are compared.
     pub conditions: Vec<String>,
     /// These, and the interactions asked for: what outcomes are fitted on.
@@ -62,7 +64,8 @@ impl Compared {
             outcome.values = kept.iter().map(|at| outcome.values[*at]).collect();
         }
         let unit = unit(played);
-        Ok(Self { unit, ..Self::of(own, participants.collect(), outcomes, &by)? })
+        let incomplete = whole().filter(|played| !played.log.problems().is_empty()).count();
+        Ok(Self { unit, incomplete, ..Self::of(own, participants.collect(), outcomes, &by)? })
     }
 
     /// Sessions of these conditions, participants (by name, or else by the session's name) and outcomes.
@@ -84,7 +87,17 @@ impl Compared {
             _ => format!("session {session}"),
         };
         let participants = participants.into_iter().map(label).collect();
-        Ok(Self { own, unit: PARTICIPANT, participants, unnamed, conditions, terms, is_repeated, outcomes })
+        Ok(Self {
+            own,
+            unit: PARTICIPANT,
+            participants,
+            unnamed,
+            incomplete: 0,
+            conditions,
+            terms,
+            is_repeated,
+            outcomes,
+        })
     }
 
     /// Sessions.

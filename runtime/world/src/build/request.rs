@@ -121,7 +121,8 @@ impl Builder<'_> {
         let mission = self.mission;
         let request = &mission.objects[index];
         let known = self.requested.get(&index).copied();
-        if request.blacklisted || request.removed || (known.is_some() && request.inside.is_none()) {
+        let stays = known.is_some_and(|id| request.inside.is_none() && !self.is_elsewhere(id, request));
+        if request.blacklisted || request.removed || stays {
             return Ok(());
         }
         if known.is_some_and(|id| self.state.at(id).requested && self.is_provided(id, request)) {
@@ -163,6 +164,12 @@ impl Builder<'_> {
         request.inside.as_ref().is_some_and(|inside| {
             self.state.at(id).parent().is_some_and(|parent| self.state.at(parent).is_called(inside))
         })
+    }
+
+    /// Whether something that can be carried is in another room than its request says.
+    fn is_elsewhere(&self, id: ObjectId, request: &ObjectRequest) -> bool {
+        let carried = self.facts().has(id, Property::Pickupable);
+        carried && request.room.is_some_and(|room| self.state.at(id).room != room)
     }
 
     /// Brings an object to where its request wants it.

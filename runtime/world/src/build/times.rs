@@ -34,7 +34,11 @@ impl Builder<'_> {
             }
             let portal = request.current_portal.clone().map(Until::Portal);
             let condition = request.condition.as_ref().map(|_| Until::Condition(index));
-            if let Some(until) = portal.or(condition).filter(|_| self.state.at(id).exists()) {
+            let Some(until) = portal.or(condition) else { continue };
+            if let Some(away) = self.state.away.get_mut(&id) {
+                // It left with what it is in, and still waits for its own time.
+                away.until = until;
+            } else if self.state.at(id).exists() {
                 self.send_away(id, until);
             }
         }

@@ -193,11 +193,12 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// A sink that the hand reaches.
+    /// A sink that the hand reaches: of several one whose water runs, such as a washbasin beside a bathtub.
     fn basin(&self) -> Option<ObjectId> {
         let sinks = self.facts.state.existing().map(|(id, _)| id);
         let table = self.facts.catalog.table();
-        sinks.filter(|id| table.is_basin(&self.facts.class(*id).id)).find(|sink| self.touch(*sink).is_ok())
+        let sinks = sinks.filter(|id| table.is_basin(&self.facts.class(*id).id) && self.touch(*id).is_ok());
+        sinks.min_by_key(|sink| !self.facts.is(*sink, StateFlag::Toggled))
     }
 
     /// What the body holds.

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use cohabit_bus::message::DialogMessage;
 use cohabit_cdf::{Action, GoToTarget, RoomId, Status};
+use cohabit_language::Consulting;
 use cohabit_record::DialogEntry;
 
 use super::{
@@ -230,6 +231,22 @@ fn a_time_out_has_its_policy() {
         let record = &records(&outbox)[0];
         assert_eq!((record.outcome, record.is_late), (DecisionOutcome::Accepted, true));
     }
+}
+
+#[test]
+fn the_time_to_decide_begins_when_the_interpreter_has_answered() {
+    let mut conversation = with_wizard(500, Some((3000, OnTimeout::Act))).consulting(Consulting::Always);
+    let (turn, outbox) = conversation.hear_called(SAID, SAID, 1000 * MS, &knowledge());
+    assert!(outbox.iter().any(|item| matches!(item, Outgoing::Interpret { .. })), "{outbox:?}");
+    assert!(conversation.proposal(1000 * MS).is_none(), "nothing can be decided yet");
+    // It takes longer than the wizard may.
+    conversation.interpreted(turn, None, "it does not know", 11_000 * MS, &knowledge());
+    assert_eq!(conversation.proposal(11_000 * MS).unwrap().left_ms, Some(3000));
+    assert!(conversation.elapse(13_999 * MS, &knowledge()).is_empty(), "the wizard decides");
+    let outbox = decide(&mut conversation, Decision::Accept { turn, revision: 0 }, 12_000);
+    let record = &records(&outbox)[0];
+    assert_eq!((record.outcome, record.is_late), (DecisionOutcome::Accepted, false));
+    assert_eq!((record.decided_ms, record.answered_ms), (Some(1000.0), Some(11_000.0)));
 }
 
 #[test]
