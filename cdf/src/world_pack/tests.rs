@@ -288,7 +288,7 @@ fn all_that_is_wrong_is_said_at_once() {
     let plain = "mass_kg = 1\nsize_m = [1, 1, 1]";
     let without = [crate_of("Box_98", plain), crate_of("Box_99", plain)].concat();
     let device = "[[device]]\nclass = [\"Nothing_01\"]\nneeds = [[\"it is Sleepy\", \"ActionExecutionError\", \"no\"]]\n\
-                  [[device]]\nclass = [\"Nothing_02\"]\nwork = \"nap\"\n";
+                  [[device]]\nclass = [\"Nothing_02\"]\nwork = \"nap\"\npress = [\"run it\"]\n";
     check(
         &[("objects/more.toml", &without), ("table/more.toml", device)],
         &["`Box_98` has no model", "`Box_99` has no model", "`it is Sleepy`", "`Nothing_02` is no class", "does `nap`"],

@@ -397,3 +397,10 @@ fn which_of_them_are_switched_on_is_told() {
     let on = "= The light switch in the kitchen.";
     answers(&mut talk, &[("which lights are on?", on), ("which lights are still on?", on)]);
 }
+
+#[test]
+fn a_tap_is_closed_by_turning_it_off() {
+    let mut talk = Talk::new(KITCHEN);
+    assert_eq!(talk.say_and_do("open the tap"), "toggle Kitchen_Sink_Double");
+    assert_eq!(talk.say_and_do("close the tap please"), "toggle Kitchen_Sink_Double");
+}

@@ -1,6 +1,6 @@
 //! Where what is put away goes: `put the milk away`, `tidy up the toys`.
 
-use cohabit_cdf::{ObjectId, Property, Verb, state::StateFlag};
+use cohabit_cdf::{ClassId, ObjectId, Property, Verb, state::StateFlag};
 
 use crate::{
     ground::want::Want,
@@ -18,6 +18,10 @@ impl Planner<'_> {
         let mut shut: Vec<ObjectId> = Vec::new();
         for object in objects.iter().copied() {
             let Some(storage) = self.storage_of(object) else {
+                let kinds = self.storage_kinds(object);
+                if self.may_find(&kinds) {
+                    return Err(self.need(&kinds, "I see no place where such things are kept."));
+                }
                 self.put_elsewhere(object)?;
                 continue;
             };
@@ -56,6 +60,14 @@ impl Planner<'_> {
             }
             None => self.put_down(None),
         }
+    }
+
+    /// The kinds of places in which the floor plans keep such things most, however many are known here.
+    fn storage_kinds(&self, object: ObjectId) -> Vec<ClassId> {
+        let Some(known) = self.scene.object(object) else { return Vec::new() };
+        let kept = self.habits.kept_in(self.catalog, known.class);
+        let most = kept.values().copied().fold(0.0, f32::max);
+        kept.into_iter().filter(|(_, share)| *share >= AS_USUAL * most).map(|(place, _)| place).collect()
     }
 
     /// The nearest of the places with doors in which the floor plans keep such things; that in which it is comes first.

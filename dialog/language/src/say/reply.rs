@@ -11,7 +11,11 @@ use crate::{
         slot::Role,
     },
     understanding::{Step, Understanding},
-    words::{intent::Intent, lexicon::Preposition, prose},
+    words::{
+        intent::Intent,
+        lexicon::{Manner, Preposition},
+        prose,
+    },
 };
 
 /// Why something is done: who says it so plainly that there is nothing to interpret has asked for it.
@@ -92,7 +96,8 @@ fn clause_in_words(clause: &Clause) -> String {
     let color = clause.color.clone();
     let words = std::iter::once(verb.to_owned());
     let words = words.chain([prose::list(&objects, "and")]).chain(color).chain(places);
-    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+    let away = (clause.manner == Some(Manner::Store) && clause.places.is_empty()).then(|| "away".to_owned());
+    words.chain(away).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// The names of plans without the steps that all of them begin with.

@@ -15,7 +15,9 @@ const THIS_ROOM: [&str; 3] = ["in", "this", "room?"];
 impl Conversation<'_> {
     /// Plain requests with the room that was said instead of one that there is not; where none was said, without it.
     pub(crate) fn with_rooms_there(&self, text: &str, source: &Source) -> String {
-        let said = source.rooms_said.iter().copied().find(|room| self.scene.may_have_room(*room));
+        // `you are still in the kitchen, mun! the living room, please`: who names the room that it is in wants it elsewhere.
+        let there = || source.rooms_said.iter().copied().filter(|room| self.scene.may_have_room(*room));
+        let said = there().find(|room| *room != self.scene.robot.room).or_else(|| there().next());
         text.split("; ").filter_map(|request| self.with_room_there(request, said)).collect::<Vec<_>>().join("; ")
     }
 
