@@ -9,6 +9,15 @@ const KITCHEN: &[&str] = &[
     "Dinner_Plate dirty",
 ];
 
+/// In the living room of a house where no lights are on but those of the kitchen.
+fn with_lights_in_the_kitchen_alone() -> Talk {
+    let mut talk = Talk::new(&["plan House_Family LivingRoom"]);
+    for switch in talk.scene.objects.iter_mut().filter(|one| one.instance == "LightSwitch_01") {
+        switch.flags.set(cohabit_cdf::StateFlag::Toggled, switch.room.id() == "Kitchen");
+    }
+    talk
+}
+
 /// Asks, and finds that answers begin like this.
 #[track_caller]
 fn answers(talk: &mut Talk, expected: &[(&str, &str)]) {
@@ -336,10 +345,7 @@ fn more_of_a_list_is_told_by_what_was_not_mentioned() {
 
 #[test]
 fn what_is_asked_of_several_is_asked_of_each_of_them_wherever_it_is() {
-    let mut talk = Talk::new(&["plan House_Family LivingRoom"]);
-    for switch in talk.scene.objects.iter_mut().filter(|one| one.instance == "LightSwitch_01") {
-        switch.flags.set(cohabit_cdf::StateFlag::Toggled, switch.room.id() == "Kitchen");
-    }
+    let mut talk = with_lights_in_the_kitchen_alone();
     let on = "= No, the light switch in the kitchen is not off.";
     answers(&mut talk, &[("are all the lights off?", on), ("are the lights off?", on)]);
     let plates = [
@@ -390,10 +396,7 @@ fn what_it_did_with_a_thing_is_all_that_it_did_with_it() {
 
 #[test]
 fn which_of_them_are_switched_on_is_told() {
-    let mut talk = Talk::new(&["plan House_Family LivingRoom"]);
-    for switch in talk.scene.objects.iter_mut().filter(|one| one.instance == "LightSwitch_01") {
-        switch.flags.set(cohabit_cdf::StateFlag::Toggled, switch.room.id() == "Kitchen");
-    }
+    let mut talk = with_lights_in_the_kitchen_alone();
     let on = "= The light switch in the kitchen.";
     answers(&mut talk, &[("which lights are on?", on), ("which lights are still on?", on)]);
 }

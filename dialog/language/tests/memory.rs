@@ -324,6 +324,14 @@ fn the_same_search_in_other_words_is_no_other_choice() {
 }
 
 #[test]
+fn what_is_kept_nowhere_is_put_away_on_another_surface() {
+    let mut robot = Robot::new(&[]);
+    robot.say("pick up the trophy", 80);
+    let (done, said) = robot.say("put it away", 80);
+    assert!(done.iter().any(|step| step.starts_with("put ")), "{done:?} {said:?}");
+}
+
+#[test]
 fn a_thing_that_is_in_something_unseen_is_looked_for_there() {
     let mut robot = Robot::new(&[]);
     let (_, said) = robot.say("pick up the purple thing on the green desk", 1);

@@ -1,5 +1,7 @@
 //! Where what is put away goes: `put the milk away`, `tidy up the toys`.
 
+use std::collections::BTreeMap;
+
 use cohabit_cdf::{ClassId, ObjectId, Property, Verb, state::StateFlag};
 
 use crate::{
@@ -19,7 +21,7 @@ impl Planner<'_> {
         for object in objects.iter().copied() {
             let Some(storage) = self.storage_of(object) else {
                 let kinds = self.storage_kinds(object);
-                if self.may_find(&kinds) {
+                if !kinds.is_empty() && self.may_find(&kinds) {
                     return Err(self.need(&kinds, "I see no place where such things are kept."));
                 }
                 self.put_elsewhere(object)?;
@@ -64,30 +66,34 @@ impl Planner<'_> {
 
     /// The kinds of places in which the floor plans keep such things most, however many are known here.
     fn storage_kinds(&self, object: ObjectId) -> Vec<ClassId> {
-        let Some(known) = self.scene.object(object) else { return Vec::new() };
-        let kept = self.habits.kept_in(self.catalog, known.class);
+        let kept = self.kept_in(object);
         let most = kept.values().copied().fold(0.0, f32::max);
         kept.into_iter().filter(|(_, share)| *share >= AS_USUAL * most).map(|(place, _)| place).collect()
     }
 
     /// The nearest of the places with doors in which the floor plans keep such things; that in which it is comes first.
     fn storage_of(&self, object: ObjectId) -> Option<ObjectId> {
-        let known = self.scene.object(object)?;
-        let kept = self.habits.kept_in(self.catalog, known.class);
+        let within = self.scene.object(object)?.parent;
+        let kept = self.kept_in(object);
         let share = |place: &KnownObject| kept.get(&place.class).copied().unwrap_or_default();
-        let places = || self.scene.objects.iter().filter(|place| self.is_storage(place, object));
+        let takes_it = |place: &&KnownObject| {
+            share(place) > 0.0 && !place.has(StateFlag::Locked) && (within == Some(place.id) || self.has_room(place))
+        };
+        let places = || self.scene.objects.iter().filter(takes_it);
         let most = places().map(share).fold(0.0, f32::max);
-        let usual = || places().filter(|place| share(place) > 0.0 && share(place) >= AS_USUAL * most);
-        let within = usual().find(|place| known.parent == Some(place.id)).map(|place| place.id);
-        within.or_else(|| self.nearest_of(usual()))
+        let usual = || places().filter(|place| share(place) >= AS_USUAL * most);
+        let own = usual().find(|place| within == Some(place.id)).map(|place| place.id);
+        own.or_else(|| self.nearest_of(usual()))
     }
 
-    /// Whether a thing can be kept in it: no machine that is started, not locked, and with room left.
-    fn is_storage(&self, place: &KnownObject, object: ObjectId) -> bool {
-        let class = self.catalog.class(place.class);
-        let is_machine = [Property::Toggleable, Property::Pickupable].into_iter().any(|property| class.has(property));
-        let is_within = self.scene.object(object).is_some_and(|known| known.parent == Some(place.id));
-        let is_locked = place.has(StateFlag::Locked);
-        class.has(Property::Receptacle) && !is_machine && !is_locked && (is_within || self.has_room(place))
+    /// How often the floor plans keep such things in what encloses them, by its kind: no machine that is started.
+    fn kept_in(&self, object: ObjectId) -> BTreeMap<ClassId, f32> {
+        let class = self.scene.object(object).map(|known| known.class);
+        let mut kept = class.map(|class| self.habits.kept_in(self.catalog, class)).unwrap_or_default();
+        kept.retain(|place, _| {
+            let class = self.catalog.class(*place);
+            class.has(Property::Receptacle) && !class.has(Property::Toggleable) && !class.has(Property::Pickupable)
+        });
+        kept
     }
 }
