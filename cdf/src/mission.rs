@@ -120,6 +120,14 @@ impl Mission {
         let named = || self.conditions.iter().filter(|condition| condition.name == name);
         named().find(|condition| condition.context == instance).or_else(|| named().next())
     }
+
+    /// What people read of a goal: its description, or else what the mission asks for; nothing, if that is only the mission's
+    /// name, as of generated ones.
+    #[must_use]
+    pub fn words_of<'m>(&'m self, goal: &'m Goal) -> &'m str {
+        let asked = if self.goal_text == self.name { "" } else { self.goal_text.as_str() };
+        if goal.description.is_empty() { asked } else { &goal.description }
+    }
 }
 
 /// A mission that can be played, the file it was read from, and what is doubtful in it.

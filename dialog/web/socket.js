@@ -7,6 +7,8 @@ const FIRST_PAUSE_MS = 500;
 const LONGEST_PAUSE_MS = 5000;
 /** A session sends its state many times a second; this long without a word means that it hangs. */
 const SILENCE_MS = 4000;
+/** And this long, that the connection is dead: longer than the session waits for a page. */
+const DEAD_MS = 20_000;
 
 let receivers = {};
 let socket = null;
@@ -44,17 +46,27 @@ export function listen(to) {
 function connect() {
   socket = new WebSocket(socketAddress());
   socket.binaryType = "arraybuffer";
+  socket.onopen = () => { heardAt = performance.now(); };
   socket.onmessage = ({ data }) => {
     heardAt = performance.now();
     if (typeof data === "string") take(JSON.parse(data));
     else receivers.binary(data);
   };
-  socket.onclose = () => {
-    showLink("lost");
-    receivers.lost();
-    setTimeout(connect, pauseMs);
-    pauseMs = Math.min(pauseMs * 1.8, LONGEST_PAUSE_MS);
-  };
+  socket.onclose = lose;
+}
+
+function lose() {
+  showLink("lost");
+  receivers.lost();
+  setTimeout(connect, pauseMs);
+  pauseMs = Math.min(pauseMs * 1.8, LONGEST_PAUSE_MS);
+}
+
+/** A browser that was asleep while the session gave it up is told nothing of that: it would wait for ever. */
+function connectAnew() {
+  [socket.onopen, socket.onmessage, socket.onclose] = [null, null, null];
+  socket.close();
+  lose();
 }
 
 export function send(message) {
@@ -101,7 +113,12 @@ function showNotice(words) {
 
 export function watchSilence() {
   if (socket?.readyState !== WebSocket.OPEN || !heardAt) return;
-  const silent = performance.now() - heardAt > SILENCE_MS;
+  const silentMs = performance.now() - heardAt;
+  if (silentMs > DEAD_MS) {
+    connectAnew();
+    return;
+  }
+  const silent = silentMs > SILENCE_MS;
   const { classList } = document.body;
   if (silent && classList.contains("open")) showLink("quiet");
   else if (!silent && classList.contains("quiet")) showLink("open");

@@ -224,7 +224,8 @@ function showDoingText(shown, lang) {
 }
 
 export function takeTurn({ body, turn, ended, status }) {
-  if (!ended || turn < (doing.get(body)?.turn ?? 0)) return;
+  // What was only answered meanwhile, or dismissed, ends nothing of what the robot is about: the turn of that ends by itself.
+  if (!ended || turn !== doing.get(body)?.turn) return;
   endStep(body, status);
   doing.delete(body);
   const other = [...doing.values()].at(-1);

@@ -364,11 +364,11 @@ function takeUnsaid({ text }) {
   addLine(line);
 }
 
-/** What each robot is about, by its body. */
+/** What each robot is about, by its body: in which turn, and in words. */
 const doing = new Map();
 
 function showDoing() {
-  byId("doing").textContent = [...doing.values()].join(", ") || "Nothing";
+  byId("doing").textContent = [...doing.values()].map(({ words }) => words).join(", ") || "Nothing";
 }
 
 function takeState(state) {
@@ -397,12 +397,12 @@ listen({
   decided: takeDecided,
   state: takeState,
   chat: takeLine,
-  progress: ({ body, text }) => {
-    doing.set(body, `${nameOf(body)}${capitalised(text)}`);
+  progress: ({ body, turn, text }) => {
+    doing.set(body, { turn, words: `${nameOf(body)}${capitalised(text)}` });
     showDoing();
   },
-  turn: ({ body, ended }) => {
-    if (ended) doing.delete(body);
+  turn: ({ body, turn, ended }) => {
+    if (ended && turn === doing.get(body)?.turn) doing.delete(body);
     showDoing();
   },
   seen: (seen) => {

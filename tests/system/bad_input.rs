@@ -56,6 +56,7 @@ fn each_mistake_is_named() {
     check(&[&path("object.json", &mission("OfficeLayout1", "Bowl_1"))], &["object.json", "Bowl_1", "Bowl_01"]);
     check(&[&path("layout.json", &mission("OfficeLayout9", "Bowl_01_1"))], &["layout.json", "OfficeLayout9"]);
     check(&["--log", &path("taken.mcap", "x")], &["taken.mcap"]);
+    check(&["--log", "/nowhere/logs/x.mcap"], &["/nowhere/logs: there is no such folder: make it first"]);
     check(&["--tls-certificate", "/nowhere/c.pem", "--tls-key", "/nowhere/k.pem"], &["/nowhere/c.pem"]);
     let _ = fs::remove_dir_all(file("x", "").parent().unwrap());
 }

@@ -63,6 +63,29 @@ fn a_person_opens_the_page_types_and_sees_the_robot_move() {
 
 #[test]
 #[cfg_attr(not(browser), ignore = "needs a browser")]
+fn a_page_whose_connection_died_without_a_word_connects_anew() {
+    let browser = Browser::start().unwrap();
+    let play = Play::start(COHABIT, &[]).unwrap();
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    tab.wait_until("window.cohabit?.frames > 0").unwrap();
+    // Each look at the clock is half a minute after the one before, as if nothing had come for so long.
+    let sleeps = "{ window.opened = 0; const Own = window.WebSocket; \
+        window.WebSocket = class extends Own { constructor(...all) { super(...all); window.opened += 1; } }; \
+        const now = performance.now.bind(performance); let late = 0; \
+        performance.now = () => now() + (late += 30000); window.wake = () => { performance.now = now; }; }";
+    tab.evaluate(sleeps).unwrap();
+    tab.wait_until("window.opened > 0").unwrap();
+    tab.evaluate("window.wake()").unwrap();
+    tab.wait_until("document.body.classList.contains('open')").unwrap();
+    tab.evaluate("document.querySelector('#chat-input').focus()").unwrap();
+    tab.type_and_enter("what are you holding?").unwrap();
+    tab.wait_until("document.querySelector('#chat').innerText.includes('My hand is empty')").unwrap();
+    drop((tab, browser));
+    play.end().unwrap();
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
 fn a_person_answers_a_question_with_a_click() {
     let browser = Browser::start().unwrap();
     let play = Play::start(COHABIT, &["--ask", "always", "--knows", "everything"]).unwrap();
@@ -98,6 +121,25 @@ fn a_question_waits_on_while_another_robot_speaks() {
     tab.evaluate(&format!("{answers}[0].click()")).unwrap();
     tab.wait_until("window.cohabit.state.robot.room === 'MainOffice'").unwrap();
     assert_eq!(tab.evaluate(&format!("{answers}.length")).unwrap(), json!(0), "an answer is given once");
+    drop((tab, browser));
+    play.end().unwrap();
+}
+
+#[test]
+#[cfg_attr(not(browser), ignore = "needs a browser")]
+fn what_the_robot_is_about_is_shown_on_while_it_answers_a_question() {
+    let browser = Browser::start().unwrap();
+    let play = Play::start(COHABIT, &["--knows", "everything"]).unwrap();
+    let mut tab = browser.open(&play.address, 1280, 720).unwrap();
+    tab.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
+    tab.evaluate("document.querySelector('#chat-input').focus()").unwrap();
+    tab.type_and_enter("go to the main office").unwrap();
+    tab.wait_until("!document.querySelector('#doing').classList.contains('idle')").unwrap();
+    tab.type_and_enter("what are you holding?").unwrap();
+    tab.wait_until("document.querySelector('#chat').innerText.includes('My hand is empty')").unwrap();
+    tab.wait_until("window.cohabit.state.robot.room === 'MainOffice'").unwrap();
+    tab.wait_until("document.querySelector('#trail .done')?.textContent.includes('main office')").unwrap();
+    assert_eq!(tab.evaluate("document.querySelectorAll('#trail .undone').length").unwrap(), json!(0));
     drop((tab, browser));
     play.end().unwrap();
 }

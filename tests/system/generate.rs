@@ -38,3 +38,23 @@ fn missions_are_parted_into_files_with_a_manifest() {
     generate(&arguments);
     assert_eq!(fs::read_to_string(format!("{parts}/manifest.json")).unwrap(), manifest);
 }
+
+#[test]
+fn what_cannot_be_made_is_named() {
+    for (arguments, part) in [
+        (
+            ["builtin", "--count", "1", "--out", "/nowhere/missions.jsonl"],
+            "/nowhere: there is no such folder: make it first",
+        ),
+        (["builtin", "--count", "0", "--out", "none.jsonl"], "--count 0: at least one"),
+        (
+            ["bultin", "--count", "1", "--out", "none.jsonl"],
+            "bultin: No such file or directory (os error 2); name a file (TOML), or",
+        ),
+    ] {
+        let output = run(COHABIT, &[&["generate"], &arguments[..]].concat()).unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(part), "{arguments:?}: {said}");
+    }
+}

@@ -1,7 +1,7 @@
 //! What bodies sense of a world: taken from the world itself, or from the records that its simulator published.
 
 use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord};
-use cohabit_cdf::{BodyId, Catalog, ObjectId};
+use cohabit_cdf::{BodyId, Catalog, ObjectId, RoomId};
 use cohabit_world::{BodyView, ObjectView, World};
 
 use crate::library::Library;
@@ -54,6 +54,9 @@ pub trait Around {
     /// Those of a room that are not hidden, by their numbers.
     fn sights_in(&self, room: u32) -> impl Iterator<Item = Sight>;
 
+    /// Whether there is such a room, as far as is known.
+    fn has_room(&self, room: RoomId) -> bool;
+
     /// What is known of the classes of objects.
     fn library(&self) -> &Library;
 }
@@ -91,6 +94,11 @@ impl Around for Records<'_> {
         self.sights().filter(move |object| object.room == room && !object.hidden)
     }
 
+    /// Records do not tell of the floor plan.
+    fn has_room(&self, _: RoomId) -> bool {
+        true
+    }
+
     fn library(&self) -> &Library {
         self.library
     }
@@ -116,6 +124,10 @@ impl Around for Simulated<'_> {
         let world = self.world;
         let objects = world.catalog().room_at(room).into_iter().flat_map(move |room| world.objects_in(room));
         objects.filter(|view| !view.hidden).map(|view| sight_of(&view, world.catalog()))
+    }
+
+    fn has_room(&self, room: RoomId) -> bool {
+        self.world.layout().room(room).is_some()
     }
 
     fn library(&self) -> &Library {

@@ -76,6 +76,11 @@ impl Choice {
         matches!(self, Self::GoTo | Self::PickUp | Self::Place | Self::Interact(_))
     }
 
+    /// The room that it leads to, if it is to go to one.
+    pub const fn room(self) -> Option<RoomId> {
+        if let Self::GoToRoom(room) = self { Some(room) } else { None }
+    }
+
     /// The command that it means, done to `object` if to one; none for waiting.
     pub const fn action(self, object: ObjectId) -> Option<Action> {
         Some(match self {

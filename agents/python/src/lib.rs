@@ -50,13 +50,14 @@ mod _native {
 
     #[pymodule_init]
     fn tables(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        use cohabit_cdf::{BodyKind, Color, Fluid, StateFlag, Status, Verb};
+        use cohabit_cdf::{BodyKind, Color, Fluid, StateFlag, Status, Verb, world_pack};
 
         use crate::{choice::Choice, known_rooms};
 
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("CHOICES", Choice::all().map(|choice| (choice.name(), choice.takes_slot())).collect::<Vec<_>>())?;
         module.add("ROOMS", known_rooms::builtin().all().iter().map(|room| room.id.id()).collect::<Vec<_>>())?;
+        module.add("PACKS", world_pack::builtin_names().collect::<Vec<_>>())?;
         module.add("KINDS", BodyKind::ALL.map(BodyKind::name).to_vec())?;
         module.add("COLORS", Color::ALL.map(Color::name).to_vec())?;
         module.add("FLUIDS", Fluid::ALL.map(Fluid::name).to_vec())?;

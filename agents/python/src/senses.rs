@@ -52,7 +52,7 @@ pub struct Sensed {
     pub positions_m: Vec<[f32; 3]>,
     /// Its states.
     pub flags: Vec<[i8; StateFlag::ALL.len()]>,
-    /// Whether its class affords each choice: `[choices, slots]`.
+    /// Whether its class affords each choice, `[choices, slots]`; of one that leads to a room, whether there is that room.
     pub afforded: Vec<i8>,
 }
 
@@ -77,9 +77,10 @@ pub struct Senses {
     classes: Py<PyAny>,
     /// `[slots, 3]` `f4`: where it is, seen from the body: ahead, to the left, up, m.
     positions: Py<PyAny>,
-    /// `[slots, 25]` `i1`: its states, in the order of `FLAGS`.
+    /// `[slots, 28]` `i1`: its states, in the order of `FLAGS`.
     flags: Py<PyAny>,
-    /// `[choices, slots]` `i1`: whether its class affords each choice; all ones for choices without an object.
+    /// `[choices, slots]` `i1`: whether its class affords each choice; all alike for choices without an object, zeros where they lead to a
+    /// room that the floor plan does not have.
     afforded: Py<PyAny>,
 }
 
@@ -141,7 +142,7 @@ impl Sensed {
         let suits: Vec<u64> = objects.iter().map(|object| affordances.of(object.class, held)).collect();
         for (number, (choice, row)) in Choice::all().zip(sensed.afforded.chunks_mut(slots.max(1))).enumerate() {
             if !choice.takes_slot() {
-                row.fill(1);
+                row.fill(i8::from(choice.room().is_none_or(|room| around.has_room(room))));
                 continue;
             }
             for (suits, afforded) in suits.iter().zip(row) {

@@ -183,6 +183,12 @@ impl Session {
         self.mission.header.file.as_str()
     }
 
+    /// The text of the mission's file.
+    #[getter]
+    fn mission_text(&self) -> &str {
+        &self.mission.text
+    }
+
     /// The seed of all that is random in it.
     #[getter]
     const fn seed(&self) -> u64 {

@@ -93,6 +93,8 @@ def test_a_step_is_a_command_to_its_outcome() -> None:
     env = cohabit.Env(planes=())
     observation, _ = env.reset(seed=0)
     assert observation["held"] == 0
+    assert observation["slot_states"].shape[1] == len(cohabit.FLAGS)
+    assert f"``[S, {len(cohabit.FLAGS)}]``" in (cohabit.office.__doc__ or ""), "as its table says"
     *_, info = env.step(choose(env, "go_to", "Bowl_01"))
     assert info["status"] == "ActionSuccessful"
     observation, reward, terminated, _, info = env.step(choose(env, "pick_up", "Bowl_01"))
@@ -328,3 +330,15 @@ def test_a_dictionary_that_was_changed_is_another_mission() -> None:
     _, infos = envs.reset(seed=0, options={"mission": mission})
     assert [info["instruction"], *infos["instruction"]] == ["Have breakfast"] * 3
     assert '"Have breakfast"' in env.office.world.made_of()[1], "the world has it too"
+
+
+def test_a_position_is_a_point_to_walk_to() -> None:
+    env = cohabit.Env(planes=())
+    env.reset(seed=0)
+    begin = env.state.bodies[0].position
+    assert len(begin) == 3 and env.act(GoTo("Lab1"))[-1]["status"] == "ActionSuccessful"
+    *_, info = env.act(GoTo(begin))
+    assert info["status"] in ("ActionSuccessful", "AlternateNavigationUsed"), info
+    assert env.state.bodies[0].position == pytest.approx(begin, abs=0.3)
+    with pytest.raises(ValueError, match=r"`target` is \(1.0,\): a room and a viewpoint's number, or a point"):
+        env.act(GoTo((1.0,)))  # type: ignore[arg-type]

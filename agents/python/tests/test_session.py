@@ -197,12 +197,27 @@ def test_a_session_that_is_not_there_is_told() -> None:
         cohabit.join("no such name")
 
 
+def test_a_body_that_is_not_there_is_told_at_once(session: str) -> None:
+    with pytest.raises(ValueError, match="has no body 2: it has bodies 0 to 1; `cohabit play --body robot` adds one"):
+        cohabit.join(session, body=2, take_over=True)
+
+
 def test_the_world_of_a_session_in_real_time_is_an_environment(session: str) -> None:
     with cohabit.join(session, body=1) as joined:
-        env = cohabit.Env(session=joined, planes=(), slots=8)
+        env = cohabit.Env(session=joined, planes=(), slots=8, instruction=True)
         env.reset()
         observation, _, _, _, info = env.act(cohabit.Rotate(0.3))
+        assert observation["instruction"] == info["instruction"] == "Make a bowl of cereal with milk"
         assert info["status"] == "ActionSuccessful"
         assert env.observation_space.contains(observation)
         with pytest.raises(cohabit.Error, match="not in lock-step"):
             joined.attend()
+
+
+def test_what_is_observed_in_a_session_can_be_kept(session: str) -> None:
+    with cohabit.join(session, body=1) as joined:
+        env = cohabit.Env(session=joined, planes=("color",), slots=8)
+        kept = [env.reset()[0]["color"]]
+        kept += [env.act(cohabit.Rotate(0.3))[0]["color"] for _ in range(12)]
+        assert len({array.ctypes.data for array in kept}) == 13
+        assert (kept[0] != kept[1]).any() and not kept[0].flags.writeable

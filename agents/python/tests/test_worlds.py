@@ -93,6 +93,18 @@ def test_environments_with_packs_are_pickled_and_copied(pack: Path) -> None:
     assert state.find(WRENCH).class_id == "Wrench_01" and state.world == [str(pack)]
 
 
+def test_only_rooms_of_the_floor_plan_may_be_chosen(pack: Path) -> None:
+    env = cohabit.Env("clean_wrench", planes=(), slots=4, world=[pack])
+    envs = cohabit.VectorEnv("clean_wrench", 1, planes=(), slots=4, world=[pack])
+    _, info = env.reset(seed=0)
+    _, infos = envs.reset(seed=0)
+    for masks in (info["action_masks"], infos["action_masks"][0]):
+        may = {name for name, is_so in zip(CHOICES, masks) if is_so and name.removeprefix("go_to_") in cohabit.ROOMS}
+        assert may == {"go_to_Hallway"}
+    *_, info = env.step(np.array([CHOICES.index("go_to_Lab1"), 0]))
+    assert info["status"] == "UnsupportedNavigation"
+
+
 def test_what_is_wrong_with_a_pack_is_said(pack: Path) -> None:
     with pytest.raises(ValueError, match="clean_wrench: there is no such file, and no built-in mission"):
         cohabit.Env("clean_wrench", planes=())
@@ -109,3 +121,20 @@ def test_missions_are_made_with_packs(pack: Path) -> None:
     made = cohabit.generate(2, seed=3, world=pack)
     assert made.world == (str(pack),) and len(made) == 2
     cohabit.Env(made, planes=()).reset(seed=0)
+
+
+def test_a_pack_that_comes_with_the_program_is_given_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    suite = cohabit.suite(world="homes")
+    assert suite.world == ("homes",) and "make_tea" in [one.id for one in suite]
+    env = cohabit.Env("make_tea", planes=(), world="homes")
+    env.reset(seed=0)
+    *_, info = env.act(GoTo("Kitchen"))
+    assert info["status"] in DONE and env.state.bodies[0].room == "Kitchen", info
+    assert pickle.loads(pickle.dumps(env)).office.world.digest() == env.office.world.digest()
+    with pytest.raises(ValueError, match="hommes: "):
+        cohabit.suite(world="hommes")
+    # A folder of that name comes first.
+    (tmp_path / "homes").mkdir()
+    with pytest.raises(ValueError, match="there is no `world.toml`"):
+        cohabit.suite(world="homes")

@@ -66,6 +66,8 @@ impl Answerer<'_> {
                 Understanding::answer(examples::abilities(self.catalog, self.scene))
             }
             (QuestionKind::Doing, _) => self.doing(),
+            (QuestionKind::Finished, Some(phrase)) if !phrase.namings.is_empty() => self.done(Some(phrase)),
+            (QuestionKind::Finished, _) => self.finished(),
             (QuestionKind::Goals, _) => self.goals(),
             (QuestionKind::Options, _) => self.options(),
             (QuestionKind::Why, about) => self.why(about, question),
@@ -90,20 +92,19 @@ impl Answerer<'_> {
             }
             (QuestionKind::Which, Some(phrase)) => self.which(phrase, question),
             (QuestionKind::Rest, _) => self.goals(),
+            (QuestionKind::Said, _) => self.said(),
             (QuestionKind::Recording, _) => Understanding::whether(true, RECORDED, Vec::new()),
             (QuestionKind::Time, _) => Understanding::answer("I have no clock, so I cannot tell."),
             (QuestionKind::Seeing, _) => self.seeing(),
+            // Before what is named: a floor lamp is called by that word, too.
+            (QuestionKind::Contents, _) if self.is_about_floor(question) => {
+                self.on_floor(self.room_in(&question.rest)).with_yes_or_no(question.is_whether)
+            }
             (QuestionKind::Contents, about)
                 if about.is_none_or(|phrase| phrase.namings.is_empty() && phrase.pronoun.is_none())
                     && let Some(room) = self.room_in(&question.rest) =>
             {
                 self.room_contents(room)
-            }
-            (QuestionKind::Contents, about)
-                if about.is_none_or(|phrase| phrase.namings.is_empty())
-                    && self.lexicon.yes_no.says_floor(&question.rest) =>
-            {
-                self.on_floor()
             }
             (QuestionKind::Contents, None) if self.context.focus.place.is_some() => {
                 self.context.focus.place.map_or_else(|| self.hint(), |place| self.contents(place))
@@ -112,8 +113,14 @@ impl Answerer<'_> {
                 if phrase.pronoun == Some(Pronoun::Thing) && (phrase.is_any || self.is_about_any_thing(question)) =>
             {
                 match phrase.relations.first() {
+                    _ if self.is_about_floor(question) => {
+                        self.on_floor(self.room_in(&question.rest)).with_yes_or_no(question.is_whether)
+                    }
                     None if let Some((state, words)) = asked_state(self.lexicon, &question.rest) => {
                         self.all_in_state(state, words, question.is_whether)
+                    }
+                    Some(relation) if relation.kind == RelationKind::Near => {
+                        self.with_object(&relation.to, |id| self.neighbours(id))
                     }
                     Some(relation) => self.with_object(&relation.to, |id| self.contents(id)),
                     None => self.seeing(),
@@ -123,6 +130,9 @@ impl Answerer<'_> {
                 self.with_object(phrase, |id| self.contents(id)).with_yes_or_no(question.is_whether)
             }
             (QuestionKind::Near, Some(phrase)) => self.with_object(phrase, |id| self.neighbours(id)),
+            (QuestionKind::Under, Some(phrase)) => {
+                self.with_object(phrase, |id| self.under(id)).with_yes_or_no(question.is_whether)
+            }
             (QuestionKind::Text, phrase) => self.text(phrase),
             (QuestionKind::Color, Some(phrase)) => self.colors(phrase),
             (QuestionKind::Distance, Some(phrase)) => self.with_object(phrase, |id| self.distance(id)),
@@ -138,6 +148,14 @@ impl Answerer<'_> {
                 }
             }
             (QuestionKind::Count, Some(phrase)) => self.count(phrase, question),
+            // `are there any lights on`
+            (QuestionKind::Where, Some(phrase))
+                if question.is_whether
+                    && !phrase.namings.is_empty()
+                    && let Some((state, words)) = self.state_after_name(question) =>
+            {
+                self.any_in_state(phrase, state, words)
+            }
             (QuestionKind::State, Some(phrase)) => self.claim(phrase, question),
             (QuestionKind::Where, about)
                 if about.as_ref().is_none_or(|phrase| phrase.namings.is_empty() && phrase.fluid.is_none())

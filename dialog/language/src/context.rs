@@ -36,6 +36,9 @@ pub struct Context {
     /// How many of its steps were left when it was stopped.
     #[serde(default)]
     pub(crate) left_undone: usize,
+    /// What was under way when it was stopped, if nothing else was begun since.
+    #[serde(default)]
+    pub(crate) halted: Option<Guess>,
     /// What failed last, with what was to follow it.
     pub(crate) failed: Option<Failure>,
     /// Why what was asked for last is done: `you asked me to open the fridge`, `you said "thirsty"`.
@@ -136,6 +139,12 @@ pub(crate) struct Guess {
     reason: String,
 }
 
+impl Guess {
+    fn begins_with(&self, step: &Step) -> bool {
+        self.steps.first().is_some_and(|first| first.action == step.action)
+    }
+}
+
 impl Context {
     /// The same before anything is made of a new utterance.
     pub(crate) fn at_new_utterance(&self) -> Self {
@@ -183,6 +192,10 @@ impl Context {
         let rest = done.map_or_else(Vec::new, |at| self.running.split_off(at + 1));
         if status.is_success() {
             self.deeds.add(step, &self.reason);
+            // What was done although it was stopped is not done again.
+            if let Some(halted) = self.halted.as_mut().filter(|halted| halted.begins_with(step)) {
+                halted.steps.remove(0);
+            }
             self.running = rest;
             return;
         }
@@ -203,7 +216,7 @@ impl Context {
         self.focus.group_taken(steps.iter().map(|step| &step.action));
         self.running = steps.to_vec();
         self.last_plan = steps.to_vec();
-        self.left_undone = 0;
+        (self.left_undone, self.halted) = (0, None);
         self.planned_for.clone_from(&self.reason);
         self.refused = None;
         self.request.clear();
@@ -257,8 +270,25 @@ impl Context {
     /// Takes note of a part of a search that is about to be carried out.
     pub(crate) fn begin_leg(&mut self, steps: &[Step]) {
         self.running = steps.to_vec();
+        self.halted = None;
         self.pending = None;
         self.failed = None;
+    }
+
+    /// Takes note of what is under way, which is about to be stopped.
+    pub(crate) fn halt(&mut self) {
+        if self.is_busy() {
+            self.halted = Some(self.guess(&self.running));
+        }
+    }
+
+    /// What was under way when it was stopped. Between two parts of a search no step is left of it: that is looked for again.
+    pub(crate) fn take_halted(&mut self) -> Option<Guess> {
+        let halted = self.halted.take()?;
+        if halted.steps.is_empty() {
+            (self.search, self.later) = (halted.search.clone(), halted.later.clone());
+        }
+        Some(halted)
     }
 
     /// What a `yes` now means is the last request again: what it is about has to be looked for.

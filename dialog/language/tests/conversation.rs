@@ -223,6 +223,31 @@ fn small_talk_and_what_to_do_are_answered() {
 }
 
 #[test]
+fn what_was_stopped_goes_on_when_that_is_said() {
+    let both = "take Banana_01_1, put KitchenCounterTop_02_1";
+    for said in ["go on", "Continue", "carry on please", "ok, keep going"] {
+        let mut talk = Talk::new(&[]);
+        assert_eq!(talk.say("pick up the banana and put it on the counter"), both);
+        assert_eq!(talk.say(said), "= I am still at it.");
+        talk.say("stop");
+        talk.say("where is the milk?");
+        assert_eq!(talk.say(said), both, "{said}");
+    }
+    // What was done by then is not done again, and what was begun since is gone on with instead.
+    let mut talk = Talk::new(&[]);
+    let plan = talk.language.understand("pick up the banana and put it on the counter", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, .. } = plan else { panic!("{plan:?}") };
+    talk.carry_out(&steps[..1]);
+    talk.say("stop");
+    assert_eq!(talk.say_and_do("go on"), "put KitchenCounterTop_02_1");
+    check(&[], "> continue\n= There is nothing that I could go on with…");
+    check(
+        &[],
+        "> open the fridge\nopen FridgeLower_02_1\n> stop\nstop!\n> turn left\nturn 90\n> stop\nstop!\n> go on\nturn 90",
+    );
+}
+
+#[test]
 fn what_is_named_next_stands_in_place_of_what_was_named_before() {
     check(
         &[],

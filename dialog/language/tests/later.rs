@@ -214,6 +214,35 @@ fn a_time_is_waited_for() {
 }
 
 #[test]
+fn whether_it_has_done_what_it_was_told_is_told() {
+    let mut talk = Talk::new(&[]);
+    assert_eq!(talk.say("are you done?"), "= I have done nothing yet.");
+    talk.say("open the microwave");
+    assert_eq!(talk.say("are you done?"), "= Not yet: I am opening the microwave.");
+    talk.say("stop");
+    assert_eq!(talk.say("did you do it?"), "= No, I was told to stop before I had done it.");
+    talk.say_and_do("open the fridge");
+    for asked in ["are you done?", "did you do that?", "have you finished?", "did it work?"] {
+        assert_eq!(talk.say(asked), "= Yes: I opened the fridge.", "{asked}");
+    }
+    let failing = talk.language.understand("open the microwave", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, .. } = failing else { panic!("{failing:?}") };
+    talk.context.note_outcome(&steps[0], Status::TargetOutOfRange);
+    assert_eq!(talk.say("did it work?"), "= No, I did not finish opening the microwave: it is too far away.");
+}
+
+#[test]
+fn what_it_waits_for_is_what_it_does() {
+    let mut talk = Talk::new(&[]);
+    talk.say("in 10 seconds, open the fridge");
+    assert_eq!(talk.say("what are you doing?"), "= I am waiting for 10 seconds.");
+    talk.say("stop");
+    assert_eq!(talk.say("what are you doing?"), "= I am waiting for you to tell me what to do.");
+    talk.say("when the fridge is open, go to the main office");
+    assert_eq!(talk.say("what are you doing?"), "= I am waiting until the fridge is open.");
+}
+
+#[test]
 fn one_wait_does_not_end_another() {
     let mut talk = Talk::new(&[]);
     talk.say("in ten minutes open the fridge");

@@ -472,6 +472,18 @@ fn what_it_has_opened_it_has_looked_into() {
 }
 
 #[test]
+fn what_it_has_not_looked_into_may_not_be_empty() {
+    let mut robot = Robot::new(&[]);
+    robot.look(true);
+    let (_, said) = robot.say("is the fridge empty?", 1);
+    assert_eq!(said, ["? The fridge is closed. I have not looked into it yet. Shall I?"]);
+    let (done, _) = robot.say("yes", 5);
+    assert!(done.contains(&"open FridgeLower_02_1".to_owned()), "{done:?}");
+    let (_, said) = robot.say("is the fridge empty?", 1);
+    assert_eq!(said, ["= No, the fridge is not empty."]);
+}
+
+#[test]
 fn what_is_gone_is_asked_about_and_looked_for() {
     let mut robot = Robot::new(&[]);
     robot.say("pick up the red mug", 1);

@@ -78,6 +78,22 @@ fn what_was_done_is_told() {
 }
 
 #[test]
+fn why_is_answered_of_what_was_asked_about() {
+    check(&["open the fridge", "why is the milk in the fridge?"], "I do not know why.");
+    check(&["open the fridge", "why is the sky blue?"], "I do not know why.");
+    check(&["open the fridge", "why?"], "Because you asked me to open the fridge…");
+    // What failed since does not explain what was done before.
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("open the fridge");
+    let failing = talk.language.understand("open the microwave", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, .. } = failing else { panic!("{failing:?}") };
+    talk.context.note_outcome(&steps[0], cohabit_cdf::Status::TargetOutOfRange);
+    let told = talk.say("why did you open the fridge?");
+    assert!(told.starts_with("= I opened the fridge, since you asked me to open the fridge"), "{told}");
+    assert_eq!(talk.say("why?"), "= I did not finish opening the microwave: it is too far away.");
+}
+
+#[test]
 fn where_a_thing_was_is_told_though_it_was_moved() {
     let found = ["pick up the hammer", "where was it when you found it?"];
     check(&found, "I took the hammer from the blue desk…");
@@ -85,6 +101,19 @@ fn where_a_thing_was_is_told_though_it_was_moved() {
         &["pick up the hammer", "take the hammer back to where you found it"],
         "OK, putting the hammer on the blue desk…",
     );
+}
+
+#[test]
+fn what_it_said_is_said_again() {
+    const MILK: &str = "I said: \"The milk is in the fridge.\"";
+    check(&["what did you say?"], "I have not said anything yet.");
+    for said in ["what did you say?", "say that again please", "can you repeat that?"] {
+        check(&["where is the milk?", said], MILK);
+        check(&["where is the milk?", said, said], MILK);
+    }
+    // What was asked since is repeated, and not what was done before.
+    check(&["pick up the banana", "where is the milk?", "repeat that please"], MILK);
+    assert_eq!(replied(&[], &["turn left", "repeat that"]), replied(&[], &["turn left"]));
 }
 
 #[test]

@@ -32,6 +32,18 @@ fn questions_are_answered_and_not_carried_out() {
 }
 
 #[test]
+fn whether_something_was_left_so_is_whether_it_is_so() {
+    const LEFT: &[&str] = &["FridgeLower_02_1 open", "Microwave_01_1 on"];
+    check(LEFT, "did you leave the microwave on?", "= Yes, the microwave is on.");
+    check(&[], "did you leave the microwave on?", "= No, the microwave is not on.");
+    check(LEFT, "have you left the fridge open?", "= Yes, the fridge is open.");
+    check(LEFT, "did I leave the fridge open?", "= Yes, the fridge is open.");
+    check(&[], "did somebody leave the fridge open?", "= No, the fridge is not open.");
+    // Where it was put is no state.
+    check(&[], "did you leave the bowl on the counter?", "= No, …");
+}
+
+#[test]
 fn requests_in_the_form_of_questions_are_carried_out() {
     let opens = "open FridgeLower_02_1";
     check(&[], "can you open the fridge?", opens);
@@ -193,9 +205,36 @@ fn what_there_is_in_no_such_state_is_not_said_to_be_there() {
 }
 
 #[test]
+fn what_is_asked_for_in_a_state_is_in_it_wherever_that_is_said() {
+    const ON: &[&str] = &["Microwave_01_1 on"];
+    check(&[], "is there a microwave on?", "= No, I know of no microwave that is on.");
+    check(ON, "is there a microwave still on?", "= Yes: the microwave on the counter top.");
+    check(ON, "is the microwave on in the break room?", "= Yes, the microwave is on.");
+    check(
+        &[],
+        "if the microwave is on in the break room, open the fridge",
+        "= The microwave is not on. So I leave that.",
+    );
+    check(ON, "if the microwave is on in the break room, open the fridge", "open FridgeLower_02_1");
+    check(&[], "is the banana on the table in here?", "= Yes, the banana is on the round table.");
+}
+
+#[test]
 fn nobody_is_nobody() {
     check(&[], "if nobody is here, open the fridge", "open FridgeLower_02_1");
     check(&[], "if there is somebody here, open the fridge", "= I see nobody here. So I leave that.");
+}
+
+#[test]
+fn what_something_stands_in_is_not_full_for_that() {
+    check(&[], "is the fridge empty?", "= No, the fridge is not empty.");
+    check(&[], "is the fridge full?", "= I cannot tell whether the fridge is full: in the fridge there is some milk.");
+    check(
+        &[],
+        "if the fridge is full, close the microwave",
+        "? I cannot tell whether the fridge is full. Shall I do it all the same?",
+    );
+    check(&["CoffeeMug_Boss_1 coffee"], "is the red mug full?", "= Yes, the red mug is full.");
 }
 
 #[test]

@@ -225,7 +225,9 @@ impl Conversation {
             }
             Understanding::Answer { text, highlight, .. } => {
                 self.say(turn, LineKind::Say, &text, outbox);
-                self.point_out(turn, number, &highlight, knowledge, TurnEnd::Answered, outbox);
+                // To point is a plan of its own, which would end what the robot is at.
+                let shown: &[ObjectId] = if self.is_at_work() { &[] } else { &highlight };
+                self.point_out(turn, number, shown, knowledge, TurnEnd::Answered, outbox);
             }
             Understanding::Refusal { text, .. } => {
                 self.say(turn, LineKind::Problem, &text, outbox);
@@ -383,6 +385,11 @@ impl Conversation {
         while self.memory.plans.len() > MOST_PLANS {
             self.memory.plans.pop_first();
         }
+    }
+
+    /// Whether a plan is under way that does more than stop or point.
+    fn is_at_work(&self) -> bool {
+        self.memory.plans.values().any(|plan| plan.steps.iter().any(|step| !step.says.is_empty()))
     }
 
     /// Has objects outlined, one after the other, without anything being said about it; the robot turns to those behind it

@@ -30,6 +30,8 @@ pub struct Hub {
     state: Mutex<Option<String>>,
     /// What the faces of robots show, by their bodies.
     faces: Mutex<BTreeMap<u32, String>>,
+    /// How far the plans under way are, by the bodies of robots, each with its turn.
+    progress: Mutex<BTreeMap<u32, (u64, String)>>,
     /// The objects that the robot asks about, in the order of their numbers.
     marked: Mutex<Arc<[ObjectId]>>,
     messages: broadcast::Sender<Arc<str>>,
@@ -122,6 +124,7 @@ impl Hub {
             lines: Mutex::default(),
             state: Mutex::default(),
             faces: Mutex::default(),
+            progress: Mutex::default(),
             marked: Mutex::default(),
             messages: broadcast::Sender::new(MESSAGES_KEPT),
             for_wizards: broadcast::Sender::new(MESSAGES_KEPT),
@@ -146,12 +149,13 @@ impl Hub {
 
     /// What a page is to be told first, and what comes after. A wizard's page, which takes no seat from others, is told no less.
     pub fn attend(&self) -> (Vec<String>, broadcast::Receiver<Arc<str>>) {
-        // The lines stay locked until the page listens, so that none is missed or told twice.
-        let lines = lock(&self.lines);
+        // Lines and progress stay locked until the page listens, so that nothing is missed or told twice.
+        let (lines, progress) = (lock(&self.lines), lock(&self.progress));
         let receiver = self.messages.subscribe();
         let mut first = vec![self.hello.clone()];
         first.extend(lines.iter().cloned());
         first.extend(lock(&self.faces).values().cloned());
+        first.extend(progress.values().map(|(_, told)| told.clone()));
         first.extend(lock(&self.state).clone());
         (first, receiver)
     }
@@ -231,6 +235,23 @@ impl Hub {
         let _ = self.messages.send(text.into());
     }
 
+    /// Tells all pages how far a robot's plan is, and keeps it until its turn is over.
+    pub fn show_progress(&self, body: u32, turn: u64, message: &Value) {
+        let text = message.to_string();
+        let mut progress = lock(&self.progress);
+        progress.insert(body, (turn, text.clone()));
+        let _ = self.messages.send(text.into());
+    }
+
+    /// Tells all pages that a turn of a robot's is over.
+    pub fn end_turn(&self, body: u32, turn: u64, message: &Value) {
+        let mut progress = lock(&self.progress);
+        if progress.get(&body).is_some_and(|(under_way, _)| *under_way == turn) {
+            progress.remove(&body);
+        }
+        self.tell(message);
+    }
+
     /// Has these objects numbered in the pictures.
     pub fn mark(&self, objects: &[ObjectId]) {
         let mut marked = lock(&self.marked);
@@ -284,6 +305,17 @@ mod tests {
             hub.show_face(1, &json!(shown));
         }
         assert_eq!(hub.attend().0, ["{}", "\"happy\""]);
+    }
+
+    #[test]
+    fn who_comes_later_is_told_how_far_a_plan_is_until_its_turn_is_over() {
+        let hub = hub();
+        hub.show_progress(1, 3, &json!("going"));
+        hub.end_turn(1, 4, &json!("answered"));
+        hub.end_turn(0, 3, &json!("another robot's"));
+        assert_eq!(hub.attend().0, ["{}", "\"going\""]);
+        hub.end_turn(1, 3, &json!("done"));
+        assert_eq!(hub.attend().0, ["{}"]);
     }
 
     #[test]

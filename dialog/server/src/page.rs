@@ -268,7 +268,11 @@ pub fn state(tick: u64, state: StateView<'_>, driven: &[u32], catalog: &Catalog)
         .iter()
         .map(|goal| {
             let hidden = goal.hidden == 1;
-            let text = if hidden { "A goal you have yet to discover" } else { goal.description.as_str() };
+            let text = match goal.description.as_str() {
+                _ if hidden => "A goal you have yet to discover",
+                "" => "A goal that the mission does not describe",
+                text => text,
+            };
             json!({ "text": in_one_line(text), "met": goal.met == 1, "hidden": hidden })
         })
         .collect();

@@ -13,6 +13,10 @@ use crate::{
     page::{self, Answer, Line, LineKind, Speaker},
 };
 
+/// What several robots are told at once is told to the last of them within this time of the first; nobody says the same to another one so
+/// soon.
+const AT_ONCE_NANOS: u64 = 2_000_000_000;
+
 /// Something that pages were told.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Told {
@@ -20,6 +24,8 @@ pub enum Told {
     Line(Line),
     /// Something that is not kept.
     Page(Value),
+    /// What the face of a body's robot shows from then on.
+    Face(u32, FacialExpression),
     /// An object was pointed out.
     Highlight(u32),
     /// An object could be heard: which, and what kind of sound.
@@ -30,11 +36,37 @@ pub enum Told {
 pub fn told(log: &Log, several: bool) -> Vec<(u64, Told)> {
     let people: BTreeSet<u32> = log.dialog.iter().map(|entry| entry.person).filter(|person| *person != 0).collect();
     let names = Names { robots: several, people: people.len() > 1 };
-    let said = log.dialog.iter().filter_map(|entry| Some((entry.tick, said(entry, names)?)));
+    let mut saying = Saying::default();
+    let is_shown =
+        |entry: &&DialogEntry| kind(&entry.kind) != Some(DialogKind::Utterance) || !saying.is_repeated_by(entry);
+    let said = log.dialog.iter().filter(is_shown).filter_map(|entry| Some((entry.tick, said(entry, names)?)));
     let happened = log.events.iter().filter_map(|entry| Some((entry.tick, happened(entry)?)));
     let mut told: Vec<_> = said.chain(happened).collect();
     told.sort_by_key(|(tick, _)| *tick);
     told
+}
+
+/// What somebody said last, and to which robots.
+#[derive(Default)]
+struct Saying {
+    person: u32,
+    text: String,
+    sent_nanos: u64,
+    bodies: BTreeSet<u32>,
+}
+
+impl Saying {
+    /// Takes in what is said next. Whether it is the same once more, for another robot that was spoken to at once: pages showed it once.
+    fn is_repeated_by(&mut self, entry: &DialogEntry) -> bool {
+        let is_at_once = entry.sent_nanos.saturating_sub(self.sent_nanos) < AT_ONCE_NANOS;
+        let is_same = is_at_once && self.person == entry.person && self.text == entry.text;
+        if is_same && self.bodies.insert(entry.body) {
+            return true;
+        }
+        let DialogEntry { person, sent_nanos, body, .. } = *entry;
+        *self = Self { person, text: entry.text.clone(), sent_nanos, bodies: BTreeSet::from([body]) };
+        false
+    }
 }
 
 /// Who is to be told apart.
@@ -57,9 +89,7 @@ fn said(entry: &DialogEntry, names: Names) -> Option<Told> {
         DialogKind::Utterance => line(Speaker::Person, LineKind::Say),
         DialogKind::Reply => line(Speaker::Robot, LineKind::Say),
         DialogKind::Question => line(Speaker::Robot, LineKind::Question),
-        DialogKind::Expressed => {
-            FacialExpression::of(&entry.text).map(|shown| Told::Page(page::expression(entry.body, shown)))
-        }
+        DialogKind::Expressed => FacialExpression::of(&entry.text).map(|shown| Told::Face(entry.body, shown)),
         DialogKind::Latency => {
             let [received, understood, moved, shown, drawn] = entry.stamps;
             let moments = Moments { turn: entry.turn, received, understood, moved, shown, drawn, ..Moments::default() };
@@ -140,26 +170,49 @@ mod tests {
         DialogEntry::new(tick, &Envelope::default(), DialogView { header: &message.header, steps: &[] }).unwrap()
     }
 
-    #[test]
-    fn the_chat_is_told_as_it_was() {
+    fn log(dialog: Vec<DialogEntry>, events: Vec<EventEntry>) -> Log {
         let session = SessionEntry::new(&SessionFacts::named("s"), &cohabit_bus::message::MissionMessage::default());
-        let goal = EventMessage::new(EventKind::GoalMet).saying("A goal");
-        let goal = EventEntry::new(&Envelope { tick: 20, ..Envelope::default() }, &goal).unwrap();
-        let log = Log {
+        Log {
             session,
             ticks: Vec::new(),
-            events: vec![goal],
-            dialog: vec![
-                spoken(10, DialogKind::Utterance, "open the fridge"),
-                spoken(10, DialogKind::Plan, ""),
-                spoken(30, DialogKind::Reply, "Done."),
-            ],
+            events,
+            dialog,
             answers: Vec::new(),
             snapshots: Vec::new(),
             gaps: Vec::new(),
             lost: Vec::new(),
             cut: None,
+        }
+    }
+
+    #[test]
+    fn what_was_said_to_several_robots_at_once_is_told_once() {
+        let to = |body: u32, second: u64| DialogEntry {
+            body,
+            sent_nanos: second * 1_000_000_000,
+            ..spoken(60 * second, DialogKind::Utterance, "stop")
         };
+        let between = spoken(60, DialogKind::Reply, "OK, I stop.");
+        // To both, to both again, and later to the second one alone.
+        let log = log(vec![to(0, 1), between, to(1, 1), to(0, 2), to(1, 2), to(1, 9)], Vec::new());
+        let told = told(&log, true);
+        let lines = told.iter().filter_map(|(tick, told)| match told {
+            Told::Line(line) if line.from == Speaker::Person => Some((*tick, line.body)),
+            _ => None,
+        });
+        assert_eq!(lines.collect::<Vec<_>>(), [(60, Some(0)), (120, Some(0)), (540, Some(1))]);
+    }
+
+    #[test]
+    fn the_chat_is_told_as_it_was() {
+        let goal = EventMessage::new(EventKind::GoalMet).saying("A goal");
+        let goal = EventEntry::new(&Envelope { tick: 20, ..Envelope::default() }, &goal).unwrap();
+        let dialog = vec![
+            spoken(10, DialogKind::Utterance, "open the fridge"),
+            spoken(10, DialogKind::Plan, ""),
+            spoken(30, DialogKind::Reply, "Done."),
+        ];
+        let log = log(dialog, vec![goal]);
         let told = told(&log, false);
         let expected = [
             (10, Line::new(Speaker::Person, LineKind::Say, 1, "open the fridge")),

@@ -1,6 +1,7 @@
 //! A recorded session on the page: to be looked at, not to be spoken with.
 
 use std::{
+    collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     thread,
     time::Duration,
@@ -15,6 +16,7 @@ use serde_json::{Value, json};
 
 use crate::{
     DialogError,
+    expression::FacialExpression,
     hub::Hub,
     page,
     recorded::{self, Told},
@@ -77,6 +79,7 @@ impl Screening {
         let (now, before) = (inner.state.tick(), inner.tick);
         if now < before || now > before + LEAP_TICKS {
             self.hub.rewind(&self.lines_to(now).cloned().collect::<Vec<_>>());
+            self.show_faces(now);
         } else {
             self.told
                 .iter()
@@ -98,6 +101,20 @@ impl Screening {
         told.iter().filter_map(|(_, told)| if let Told::Line(line) = told { Some(line) } else { None })
     }
 
+    /// Shows what the faces of robots show at that time: nothing in particular, as long as they have not shown anything.
+    fn show_faces(&self, now: u64) {
+        let mut faces = BTreeMap::<u32, FacialExpression>::new();
+        for (tick, told) in &self.told {
+            if let Told::Face(body, shown) = told {
+                let face = faces.entry(*body).or_default();
+                if *tick <= now {
+                    *face = *shown;
+                }
+            }
+        }
+        faces.into_iter().for_each(|(body, shown)| self.hub.show_face(body, &page::expression(body, shown)));
+    }
+
     fn tell(&self, told: &Told, state: StateView<'_>) {
         let about = |object: u32, message: &dyn Fn(&ObjectRecord) -> Value| {
             if let Some(record) = state.objects.iter().find(|record| record.object == object) {
@@ -107,6 +124,7 @@ impl Screening {
         match told {
             Told::Line(line) => self.hub.say(line),
             Told::Page(message) => self.hub.tell(message),
+            Told::Face(body, shown) => self.hub.show_face(*body, &page::expression(*body, *shown)),
             Told::Highlight(object) => about(*object, &|record| page::highlight(record, None, &self.catalog)),
             Told::Sound(object, kind) => about(*object, &|record| page::sound(record, kind, &self.catalog)),
         }
@@ -127,5 +145,30 @@ impl Screening {
         let mut inner = self.lock();
         inner.state.refresh()?;
         Ok(inner.state.view()?.and_then(|state| page::seen(thing, place, state, &self.catalog)))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use cohabit_bus::{Local, message::StateParts};
+
+    use super::*;
+
+    #[test]
+    fn faces_are_those_of_the_time_that_is_shown() {
+        let bus = Local::new(1);
+        let hub = Arc::new(Hub::new(json!({}), Vec::new(), Box::new(|| ())));
+        let told = vec![(700, Told::Face(0, FacialExpression::Sorry)), (2000, Told::Face(0, FacialExpression::Happy))];
+        let screening = Screening::new(&bus, Arc::clone(&hub), Arc::new(Catalog::builtin()), told).unwrap();
+        let mut states = bus.publisher(Topic::State).unwrap();
+        // A leap, what goes by, and a leap back.
+        for (tick, shown) in [(1500, "sorry"), (2100, "happy"), (10, "neutral")] {
+            let parts = StateParts::default();
+            states.send(tick, parts.bytes(), &mut |bytes| parts.write(bytes)).unwrap();
+            screening.show().unwrap();
+            let known = hub.attend().0;
+            assert!(known.iter().any(|message| message.contains(shown)), "{shown}: {known:?}");
+        }
     }
 }

@@ -23,7 +23,8 @@ pub struct Settings {
     pub catalog: Arc<Catalog>,
     /// How they look.
     pub meshes: Arc<MeshLibrary>,
-    /// The seed where a mission leaves it to chance.
+    /// The seed of the first game, where its mission leaves it to chance; each next game has the one after it, so that whoever
+    /// launches a mission anew finds it arranged anew.
     pub seed: u64,
     /// Bodies beside those of the missions.
     pub bodies: Vec<BodyRequest>,
@@ -140,7 +141,8 @@ impl Arena {
         self.games += 1;
         let session = format!("{name}-{}", self.games);
         let log = logs.join(format!("{session}.mcap"));
-        let plan = SessionPlan::new(file, cdf, Arc::clone(catalog), *seed)?.with_bodies(bodies.clone());
+        let seed = seed.wrapping_add(u64::from(self.games - 1));
+        let plan = SessionPlan::new(file, cdf, Arc::clone(catalog), seed)?.with_bodies(bodies.clone());
         let game = Game::new(&plan, Arc::clone(meshes), Box::new(self.renderer.clone()), &session, &log)?;
         tracing::info!("game {}: \"{}\", recorded in {}", self.games, plan.mission.goal_text, log.display());
         Ok(game)

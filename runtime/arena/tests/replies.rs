@@ -433,6 +433,22 @@ fn a_mission_that_cannot_be_launched_is_named() {
 }
 
 #[test]
+fn what_is_left_to_chance_is_arranged_anew_in_each_game() {
+    let apples = json!([object("Apple_1", json!([]), json!([]))]);
+    let mut client = Client::new();
+    let mut places = |floor_plan: &str| -> BTreeSet<String> {
+        let cdf = mission(apples.clone()).replace(r#""floor_plan":"0""#, &format!(r#""floor_plan":"{floor_plan}""#));
+        let place = |_| {
+            assert!(client.send(cdf.as_bytes()).is_none());
+            find(&client.batch(&[]), "Apple_1")["position"].to_string()
+        };
+        (0..4).map(place).collect()
+    };
+    assert!(places("-1").len() > 1);
+    assert_eq!(places("7").len(), 1, "a mission with a seed is the same each time");
+}
+
+#[test]
 fn each_game_has_a_log_that_replays() {
     let mut client = Client::launched(builtin("warm_coffee"));
     client.must(&["goto CoffeeMug_Boss_1", "pickup CoffeeMug_Boss_1", "room SmallOffice"]);

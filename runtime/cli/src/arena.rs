@@ -40,7 +40,7 @@ pub struct ArenaOptions {
 pub struct Games<'a> {
     /// What is launched first, if anything is.
     pub mission: Option<&'a str>,
-    /// The seed where missions leave it to chance.
+    /// The seed of the first game, where its mission leaves it to chance.
     pub seed: u64,
     /// Bodies beside those of the missions.
     pub bodies: &'a [BodyRequest],

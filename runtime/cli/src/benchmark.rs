@@ -16,7 +16,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
     build,
-    failure::{bad_input, environment},
+    failure::{bad_input, check_folder_of, environment},
     sessions,
     terminal::{shown, shown_lines},
     world::WorldPacks,
@@ -199,10 +199,7 @@ impl Run {
     /// What is wrong with where it reads and writes is said before missions are made and played.
     fn check_places(&self) -> anyhow::Result<()> {
         self.asked.check()?;
-        let parent = self.out.parent().filter(|parent| !parent.as_os_str().is_empty());
-        if let Some(parent) = parent.filter(|parent| !parent.is_dir()) {
-            return Err(bad_input(format!("{}: there is no such folder: make it first", parent.display())));
-        }
+        check_folder_of(&self.out)?;
         if self.out.exists() && Submission::read(&self.out).is_err() {
             return Err(bad_input(RunError::Exists { path: self.out.clone() }));
         }

@@ -1,6 +1,6 @@
 //! What a failed command prints, and its exit code.
 
-use std::{fmt, process::ExitCode};
+use std::{fmt, path::Path, process::ExitCode};
 
 use cohabit_bus::BusError;
 
@@ -56,6 +56,15 @@ pub fn bad_input(message: impl fmt::Display) -> anyhow::Error {
 /// A failure that the same arguments need not have again.
 pub fn environment(message: impl fmt::Display) -> anyhow::Error {
     Environment(message.to_string()).into()
+}
+
+/// Refuses a file for which there is no folder, before work is done for it.
+pub fn check_folder_of(file: &Path) -> anyhow::Result<()> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.filter(|folder| !folder.is_dir()) {
+        Some(folder) => Err(bad_input(format!("{}: there is no such folder: make it first", folder.display()))),
+        None => Ok(()),
+    }
 }
 
 /// Why a session could not be joined: its name is an argument, all else is not.

@@ -13,7 +13,7 @@ use cohabit_generate::{Order, Spec};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
-    failure::{bad_input, environment},
+    failure::{bad_input, check_folder_of, environment},
     splits::{self, Asked},
     terminal::{shown, shown_lines},
     world::WorldPacks,
@@ -66,6 +66,7 @@ fn split_share(text: &str) -> Result<f64, String> {
 impl Generate {
     /// Makes them all. The file appears once it is whole.
     pub fn run(&self) -> anyhow::Result<()> {
+        self.check()?;
         let catalog = Arc::clone(self.packs.read()?.catalog());
         let spec = self.spec(&catalog)?;
         let workers = self.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
@@ -113,11 +114,20 @@ impl Generate {
         }
     }
 
+    /// What is wrong with what was asked for is said before missions are made.
+    fn check(&self) -> anyhow::Result<()> {
+        if self.count == 0 {
+            return Err(bad_input("--count 0: at least one"));
+        }
+        check_folder_of(&self.out)
+    }
+
     fn spec(&self, catalog: &Catalog) -> anyhow::Result<Spec> {
         let spec = if self.spec == "builtin" {
             Spec::builtin(catalog)
         } else {
-            let text = fs::read_to_string(&self.spec).map_err(|error| bad_input(format!("{}: {error}", self.spec)))?;
+            let unread = |error| bad_input(format!("{}: {error}; name a file (TOML), or `builtin`", self.spec));
+            let text = fs::read_to_string(&self.spec).map_err(unread)?;
             Spec::parse(&self.spec, &text, catalog).map_err(bad_input)?
         };
         Ok(match self.blockers {

@@ -1,11 +1,6 @@
 //! `cohabit play`: one session from start to end.
 
-use std::{
-    ffi::OsString,
-    net::SocketAddr,
-    path::PathBuf,
-    time::{Instant, SystemTime, UNIX_EPOCH},
-};
+use std::{ffi::OsString, net::SocketAddr, path::PathBuf, time::Instant};
 
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, SessionError, Shm, Topic, message::Plane};
@@ -17,7 +12,7 @@ use cohabit_record::{Branch, Log};
 use crate::{
     branch::{BranchPoint, Branched},
     doctor::ensure_room,
-    failure::{IncompleteLog, bad_input, environment, joining},
+    failure::{IncompleteLog, bad_input, check_folder_of, environment, joining},
     minds::MindRequest,
     mission_file::MissionFile,
     peers::{self, Listening, NAME_OF, Noted, Timing, Watching},
@@ -49,7 +44,8 @@ pub struct Play {
     bodies: Vec<BodyRequest>,
     /// A mind for a body: `dialog`, `random`, `scripted`, `helper`, `expert` (which plays the mission to its goals and knows
     /// what the simulator knows) or `pedestrian` (people who walk about by a schedule), with the number of its body if it is not
-    /// 0, and a script if it is scripted; as often as there are bodies
+    /// 0, and a script if it is scripted; as often as there are bodies. Beside others `dialog` has to be named, too: without it
+    /// nobody does what people ask for
     #[arg(long = "agent", value_name = "KIND[@BODY][=FILE]", default_value = "dialog")]
     minds: Vec<MindRequest>,
     /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
@@ -96,7 +92,7 @@ impl Play {
         let began = Instant::now();
         let stop = stop::on_request()?;
         stop::with_supervisor(self.supervisor)?;
-        let seed = self.seed.unwrap_or_else(clock_seed);
+        let seed = self.seed.unwrap_or_else(sessions::clock_seed);
         let world = self.packs.read()?;
         let (plan, before) = self.plan(seed, &world)?;
         MindRequest::check(&self.minds, &plan)?;
@@ -275,6 +271,7 @@ impl Play {
             if path.exists() {
                 return Err(bad_input(format!("{}: exists already; choose another `--log`", path.display())));
             }
+            check_folder_of(path)?;
             return Ok(path.clone());
         }
         Ok(sessions::folder(None)?.join(format!("{}_{session}.mcap", sessions::time())))
@@ -289,10 +286,4 @@ fn bodies(plan: &SessionPlan) -> usize {
 /// All cameras of a session.
 fn cameras(plan: &SessionPlan) -> Vec<CameraPlan> {
     plan.all_cameras(bodies(plan))
-}
-
-fn clock_seed() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    // What JSON numbers hold exactly.
-    u64::from(since.subsec_nanos()) ^ (since.as_secs() << 20) & ((1 << 53) - 1)
 }

@@ -3,6 +3,7 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    time::{SystemTime, UNIX_EPOCH},
 };
 
 use anyhow::Context as _;
@@ -20,6 +21,13 @@ pub fn folder(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
 /// The time now, as names of logs have it.
 pub fn time() -> String {
     jiff::Zoned::now().strftime("%Y-%m-%d_%H-%M-%S").to_string()
+}
+
+/// A seed, where none was asked for.
+pub fn clock_seed() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    // What JSON numbers hold exactly.
+    u64::from(since.subsec_nanos()) ^ (since.as_secs() << 20) & ((1 << 53) - 1)
 }
 
 /// The folder for sessions in the user's data folder.

@@ -111,7 +111,7 @@ struct Withdraw {
 
 #[derive(clap::Args)]
 struct Export {
-    /// The folder that was given to `cohabit study run`
+    /// The folder that was given to `cohabit study run` or `cohabit study simulate`
     #[arg(long, value_name = "DATA")]
     folder: PathBuf,
     /// The folder to write tables into
@@ -142,6 +142,12 @@ fn read(path: &Path) -> anyhow::Result<(StudyFile, cohabit_study::Study)> {
     let file = StudyFile::read(path).map_err(bad_input)?;
     let study = file.check(&ThisProgram::default()).map_err(bad_input)?;
     Ok((file, study))
+}
+
+/// The study that is kept in a folder of data.
+fn kept(folder: &Path) -> anyhow::Result<(StudyFile, cohabit_study::Study)> {
+    let file = Folder::study_file(folder);
+    if file.is_file() { read(&file) } else { Err(bad_input(FolderError::NoStudy { path: folder.to_owned() })) }
 }
 
 /// What the sessions of a study were played in whose files lie in a folder.
@@ -294,7 +300,7 @@ fn not_now(error: FolderError) -> anyhow::Error {
 
 impl Export {
     fn run(&self) -> anyhow::Result<()> {
-        let (file, study) = read(&Folder::study_file(&self.folder))?;
+        let (file, study) = kept(&self.folder)?;
         let world = world_of(&study, file.folder())?;
         let records = Records::read(study, &self.folder).map_err(refused)?;
         let logs = data::logs(&self.folder, &records.progress, self.practice)?;
@@ -323,6 +329,16 @@ mod tests {
             if let Err(error) = checked {
                 panic!("{}: {error:#}", path.display());
             }
+        }
+    }
+
+    #[test]
+    fn a_folder_without_a_study_is_named() {
+        let folder = PathBuf::from("/nowhere/data");
+        let export = Export { folder: folder.clone(), out: folder.clone(), practice: false };
+        for said in [export.run(), Report { folder, out: None }.run()] {
+            let said = said.expect_err("no study").to_string();
+            assert!(said.contains("/nowhere/data holds no study: name the folder that was given to"), "{said}");
         }
     }
 

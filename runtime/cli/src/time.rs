@@ -36,7 +36,7 @@ enum Change {
         #[arg(default_value_t = 1)]
         ticks: u32,
     },
-    /// The world goes so many times as fast as real time, 0.05 to 20
+    /// The world goes so many times as fast as real time, 0.05 to 20; in lock-step no speed counts
     Speed {
         /// How many times
         #[arg(value_parser = peers::speed)]

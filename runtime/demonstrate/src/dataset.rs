@@ -97,16 +97,22 @@ fn begin(missions: &[MissionText], folder: &Path, recipe: &Recipe) -> Result<(),
     fs::write(&path, text).map_err(at(&path))
 }
 
-/// Writes the card and, last, the manifest.
+/// Writes the card and, last, the manifest. A set that is whole already stays as it is: its card may say more by now, such as what people
+/// wrote about it.
 fn finish(folder: &Path, text: &str, episodes: &[EpisodeEntry], left_out: &[LeftOut]) -> Result<(), DemonstrateError> {
-    write_whole(folder, "README.md", text)?;
     let manifest = json!({
         "format": FORMAT,
         "program": env!("CARGO_PKG_VERSION"),
         "episodes": episodes,
         "left_out": left_out,
     });
-    write_whole(folder, "manifest.json", &format!("{manifest:#}\n"))
+    let manifest = format!("{manifest:#}\n");
+    let is_whole = fs::read_to_string(folder.join("manifest.json")).is_ok_and(|known| known == manifest);
+    if is_whole && folder.join("README.md").is_file() {
+        return Ok(());
+    }
+    write_whole(folder, "README.md", text)?;
+    write_whole(folder, "manifest.json", &manifest)
 }
 
 /// Writes a file that appears once it is whole.

@@ -116,3 +116,22 @@ fn the_same_recipe_makes_the_same_bytes_with_any_number_of_workers() {
     fs::remove_dir_all(&one).unwrap();
     fs::remove_dir_all(&other).unwrap();
 }
+
+#[test]
+fn what_others_added_to_the_card_of_a_whole_data_set_stays() {
+    let folder = folder("card");
+    make(&["make_cereal"], &folder, &[], 1).unwrap();
+    let card = folder.join("README.md");
+    let with_more = format!("{}\n# What people wrote\n", fs::read_to_string(&card).unwrap());
+    fs::write(&card, &with_more).unwrap();
+    make(&["make_cereal"], &folder, &[], 1).unwrap();
+    assert_eq!(fs::read_to_string(&card).unwrap(), with_more);
+    // An episode that was made anew is the same one; a card that is gone is written again.
+    fs::remove_dir_all(folder.join("episodes/000000")).unwrap();
+    make(&["make_cereal"], &folder, &[], 1).unwrap();
+    assert_eq!(fs::read_to_string(&card).unwrap(), with_more);
+    fs::remove_file(&card).unwrap();
+    make(&["make_cereal"], &folder, &[], 1).unwrap();
+    assert!(fs::read_to_string(&card).unwrap().starts_with("# Demonstrations"));
+    fs::remove_dir_all(&folder).unwrap();
+}

@@ -9,7 +9,11 @@ use std::{
     time::Duration,
 };
 
-use cohabit_bus::{Listener, Transport, Wake, give_way, go_first, message::Stage, monotonic_nanos, wall_nanos};
+use cohabit_bus::{
+    Listener, Transport, Wake, give_way, go_first,
+    message::{Control, Stage},
+    monotonic_nanos, wall_nanos,
+};
 use cohabit_render::{CpuRenderer, MeshLibrary, Renderer};
 use cohabit_world::{DT_NANOS, World};
 
@@ -114,7 +118,8 @@ impl Simulator {
                 !stop.load(Ordering::Relaxed) && !cameras.is_finished()
             };
             let closing = Closing { desk: &desk, over: &over };
-            let mut clock = Clock { engine, desk: &desk, bell, pace, goes_on, shown_nanos: 0 };
+            let in_lock_step = lock_step.is_some();
+            let mut clock = Clock { engine, desk: &desk, bell, pace, in_lock_step, goes_on, shown_nanos: 0 };
             let ran = match lock_step {
                 None => clock.run_in_real_time(),
                 Some(lock_step) => clock.run_in_lock_step(lock_step),
@@ -146,6 +151,8 @@ struct Clock<'a, G> {
     desk: &'a Desk,
     bell: Box<dyn Listener>,
     pace: Pace,
+    /// Whether it goes as fast as those who attend, and no speed counts.
+    in_lock_step: bool,
     /// Whether it goes on at that tick.
     goes_on: G,
     /// When the scene was last shown to those who render.
@@ -244,8 +251,12 @@ impl<G: Fn(u64) -> bool> Clock<'_, G> {
     /// Does what the clock is asked to do.
     fn obey(&mut self) -> Result<(), EngineError> {
         for control in self.engine.take_controls() {
-            let sentence = self.pace.obey(control);
-            self.engine.set_clock(self.pace.is_paused(), &sentence)?;
+            let obeyed = self.pace.obey(control);
+            let sentence = match control {
+                Control::Speed(_) if self.in_lock_step => "in lock-step the world goes as fast as its agents",
+                _ => &obeyed,
+            };
+            self.engine.set_clock(self.pace.is_paused(), sentence)?;
         }
         Ok(())
     }

@@ -171,6 +171,16 @@ fn in_lock_step_the_world_waits() {
 }
 
 #[test]
+fn in_lock_step_no_speed_counts_and_that_is_said() {
+    with_simulator(&plan(&[]).in_lock_step(1), false, |bus| {
+        let mut events = Inbox::new(bus, Topic::Events).unwrap();
+        ask(bus, Control::Speed(2.0));
+        let said = wait(&mut events, |sample| event(sample, EventKind::Clock));
+        assert!(said.text.as_str().contains("in lock-step"), "{}", said.text.as_str());
+    });
+}
+
+#[test]
 fn in_lock_step_frames_belong_to_the_turn() {
     with_simulator(&plan(&[]).in_lock_step(1), false, |bus| {
         let mut client = Client::join(bus, 0, "test").unwrap();

@@ -96,6 +96,17 @@ const OWN_FLAGS: [&str; 18] = [
     "world-hash",
 ];
 
+/// What to do instead of setting one of these: a few follow from a key of the file.
+fn instead_of(flag: &str) -> &'static str {
+    match flag {
+        "page-language" => "it follows from `language`, a key above all tables",
+        "page-texts" => "it follows from `page_texts`, a key above all tables",
+        "seats" => "it follows from `participants_per_session`, a key above all tables",
+        "world" => "it follows from `world`, a key above all tables",
+        _ => "leave it out",
+    }
+}
+
 /// A study's file with its text.
 #[derive(Clone, Debug)]
 pub struct StudyFile {
@@ -279,7 +290,7 @@ impl Checking<'_, '_> {
     fn is_setting(&mut self, name: &Spanned<String>, setting: &Setting, at: &Pointer) -> bool {
         let text = name.get_ref().as_str();
         let (problem, remedy) = if OWN_FLAGS.contains(&text) {
-            (format!("`{text}` is not a study's to set"), "leave it out")
+            (format!("`{text}` is not a study's to set"), instead_of(text))
         } else if text.starts_with("wizard-") || text.starts_with("wizard_") {
             (format!("`{text}` is the same in all sessions"), "write it into `[wizard]`, without its first word")
         } else if OF_PAGES.contains(&text) {

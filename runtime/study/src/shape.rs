@@ -114,12 +114,13 @@ pub const STUDY: &[Key] = &[
     optional(
         "missions",
         Kind::Texts,
-        "the missions of the block of kind `missions`: names of built-in missions, or files",
+        "the missions of the block of kind `missions`: names of missions that are built in or in a pack of `world`, or files",
     ),
     optional(
         "world",
         Kind::Texts,
-        "world packs that all sessions are played with, in their order: folders within that of the study, which are kept with its data",
+        "world packs that all sessions are played with, in their order: folders within that of the study, or names of packs that come \
+         with the program, such as homes; they are kept with its data",
     ),
     optional(
         "settings",

@@ -272,6 +272,6 @@ fn color(body: &BodyRecord) -> [u8; 3] {
 }
 
 /// The name of an object of a state.
-pub fn name_of<'a>(objects: &'a [ObjectRecord], object: u32) -> Option<&'a str> {
+pub fn name_of(objects: &[ObjectRecord], object: u32) -> Option<&str> {
     objects.iter().find(|record| record.object == object).map(|record| record.instance.as_str())
 }

@@ -153,7 +153,7 @@ impl Show<'_> {
         let log = self.log;
         let events = due(&log.events, &mut self.events, |event| event.tick <= entry.tick);
         let dialog = due(&log.dialog, &mut self.dialog, |said| said.tick <= entry.tick);
-        if !events.is_empty() || !entry.inputs.is_empty() || entry.tick % SCENE_EVERY_TICKS == 0 {
+        if !events.is_empty() || !entry.inputs.is_empty() || entry.tick.is_multiple_of(SCENE_EVERY_TICKS) {
             self.showing.state(self.replayer.state())?;
         }
         entry.inputs.iter().try_for_each(|input| self.showing.input(input))?;
@@ -161,7 +161,7 @@ impl Show<'_> {
         dialog.iter().try_for_each(|said| self.showing.dialog(said))?;
         self.answers(entry.tick)?;
         match &mut self.eyes {
-            Some(eyes) if entry.tick % eyes.every_ticks == 0 => eyes.look(&self.replayer, &mut self.showing),
+            Some(eyes) if entry.tick.is_multiple_of(eyes.every_ticks) => eyes.look(&self.replayer, &mut self.showing),
             _ => Ok(()),
         }
     }

@@ -72,7 +72,7 @@ pub(crate) fn statuses(mission: &Mission, state: &State) -> Vec<GoalStatus> {
     goals
         .map(|(goal, progress)| GoalStatus {
             id: goal.id,
-            description: goal.description.clone(),
+            description: mission.words_of(goal).to_owned(),
             met: progress.met,
             hidden: goal.hidden && !progress.shown && !progress.met,
         })

@@ -137,3 +137,17 @@ fn conditions_combine() {
     player.must(&TAKE_AND_PUT_BACK[1..2]);
     assert_eq!(met(&player), [true; 5]);
 }
+
+#[test]
+fn what_a_goal_does_not_say_its_mission_does() {
+    let words = |goal_text: &str, description: &str| {
+        let goal = Goal { description: description.to_owned(), ..goal(0, "Apple_1", held(true)) };
+        let mission =
+            Mission { goal_text: goal_text.to_owned(), goals: vec![goal], ..plain_mission(RoomId::BREAK_ROOM) };
+        build(&Arc::new(Catalog::builtin()), mission, 2).goals()[0].description.clone()
+    };
+    assert_eq!(words("Warm the soup", "Take the bowl"), "Take the bowl");
+    assert_eq!(words("Warm the soup", ""), "Warm the soup");
+    // Generated missions ask for nothing but their name.
+    assert_eq!(words("plain", ""), "");
+}

@@ -111,6 +111,8 @@ fn some_objects_stay_away() {
     };
     assert!(count(&[], "CoffeeMug_Boss") > 0, "the floor plan has some of its own");
     assert_eq!(count(&["CoffeeMug_Boss_1 blacklisted"], "CoffeeMug_Boss"), 0);
+    // Also under the id that the plan has for it.
+    assert_eq!(count(&["CoffeeMug_Boss_10000 blacklisted"], "CoffeeMug_Boss"), 0);
     assert_eq!(count(&["CoffeeMug_Boss_1 unique in TableRound_02_1"], "CoffeeMug_Boss"), 1);
     assert_eq!(count(&["CoffeeMug_Boss_1 removed", "CoffeeMug_Boss_2 unique in TableRound_02_1"], "CoffeeMug_Boss"), 1);
     let emptied = player(RoomId::BREAK_ROOM, &["FridgeLower_02_1 emptied"]);
@@ -357,6 +359,21 @@ fn messages_and_camera_movements_come_when_they_are_due() {
 }
 
 #[test]
+fn a_camera_turns_to_the_only_machine_of_the_plan_under_a_small_number() {
+    let movement = CameraMovement {
+        when: MessageTime::Beginning,
+        view: CameraView::Object(pattern("Microwave_01_1")),
+        duration_s: 2.0,
+        text: None,
+    };
+    let mut player = play(Mission { camera_movements: vec![movement], ..mission(RoomId::BREAK_ROOM, &[]) });
+    player.must(&["wait 1"]);
+    let microwave = CameraTarget::Object(player.id("Microwave_01_10000"));
+    let turns = |event: &Event| matches!(event, Event::CameraMovement { target, .. } if *target == microwave);
+    assert!(player.events.iter().any(turns), "{:?}", player.events);
+}
+
+#[test]
 fn what_is_in_something_that_is_away_waits_for_its_own_time_too() {
     let taken = |thing: &str| Occasion::States(vec![flag(thing, StateFlag::PickedUp, true)], Relation::And);
     let late = |wish: &str, after: &str| ObjectRequest { condition: Some(taken(after)), ..request(wish) };
@@ -400,6 +417,26 @@ fn a_note_unlocks_a_hidden_goal() {
     assert!(player.events.contains(&Event::GoalShown { id: 0 }));
     let read = Event::NoteRead { object: player.id("StickyNote_3"), text: "Hungry?".to_owned() };
     assert!(player.events.contains(&read));
+}
+
+#[test]
+fn no_two_notes_share_a_place() {
+    let note = |number: usize, place: usize| NoteRequest {
+        instance: format!("StickyNote_{number}"),
+        text: "Hungry?".to_owned(),
+        room: RoomId::BREAK_ROOM,
+        place,
+    };
+    // The break room has six places, counted from 0.
+    let notes = vec![note(1, 0), note(2, 0), note(3, 6), note(4, 5)];
+    let player = play(Mission { notes, ..mission(RoomId::BREAK_ROOM, &[]) });
+    let at: Vec<_> = (1..=4)
+        .map(|number| player.world.object(player.id(&format!("StickyNote_{number}"))).unwrap().position_m)
+        .collect();
+    for (index, one) in at.iter().enumerate() {
+        assert!(at[..index].iter().all(|other| other.distance(*one) > 0.5), "{at:?}");
+    }
+    assert!((at[2].x - 3.85).abs() < 0.01, "beyond the last place is the last: {}", at[2]);
 }
 
 #[test]

@@ -53,10 +53,7 @@ pub fn read_plan(text: &str) -> Result<Vec<PlanLine>, PlanFileError> {
         if words.first().is_some_and(|word| NOBODY_DOES.contains(&word.as_str())) {
             continue;
         }
-        let line = match &expression {
-            Sexpr::List(_, line) => *line,
-            Sexpr::Word(_) => 0,
-        };
+        let (Sexpr::Word(_, line) | Sexpr::List(_, line)) = expression;
         match action(&words) {
             Some((kind, thing)) => plan.push(PlanLine { line, kind, thing }),
             None => return Err(PlanFileError::NoAction { line, found: words.join(" ") }),
@@ -67,7 +64,7 @@ pub fn read_plan(text: &str) -> Result<Vec<PlanLine>, PlanFileError> {
 
 /// The parts of an action: its words, parted at hyphens.
 fn words(expression: &Sexpr) -> Vec<String> {
-    let all = if let Sexpr::Word(_) = expression { std::slice::from_ref(expression) } else { expression.list() };
+    let all = if let Sexpr::Word(..) = expression { std::slice::from_ref(expression) } else { expression.list() };
     all.iter().filter_map(Sexpr::word).flat_map(|word| word.split('-')).map(str::to_owned).collect()
 }
 
@@ -99,6 +96,7 @@ mod tests {
             ("(pick_up", "line 1: this bracket is never closed"),
             ("; nothing\n", "there is no action in it"),
             ("(open)", "line 1: `open` is no action"),
+            ("(pick_up bowl_01_1)\nopen fridge", "line 2: `open` is no action; write (KIND-THING-NUMBER)"),
         ] {
             let error = read_plan(text).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");

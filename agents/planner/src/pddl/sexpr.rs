@@ -3,8 +3,8 @@
 /// An expression.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Sexpr {
-    /// A word, in lower case: PDDL tells no cases apart.
-    Word(String),
+    /// A word, in lower case: PDDL tells no cases apart; and the line on which it stands, from 1.
+    Word(String, usize),
     /// A list, and the line on which it begins, from 1.
     List(Vec<Self>, usize),
 }
@@ -36,7 +36,7 @@ impl Sexpr {
                         open.pop().ok_or(SexprError { line, reason: "a bracket is closed that was never opened" })?;
                     innermost(&mut open, &mut all).push(Self::List(list, began));
                 }
-                word => innermost(&mut open, &mut all).push(Self::Word(word.to_lowercase())),
+                word => innermost(&mut open, &mut all).push(Self::Word(word.to_lowercase(), line)),
             }
         }
         match open.pop() {
@@ -49,7 +49,7 @@ impl Sexpr {
     #[must_use]
     pub fn word(&self) -> Option<&str> {
         match self {
-            Self::Word(word) => Some(word),
+            Self::Word(word, _) => Some(word),
             Self::List(..) => None,
         }
     }
@@ -58,7 +58,7 @@ impl Sexpr {
     #[must_use]
     pub fn list(&self) -> &[Self] {
         match self {
-            Self::Word(_) => &[],
+            Self::Word(..) => &[],
             Self::List(list, _) => list,
         }
     }
@@ -97,7 +97,7 @@ mod tests {
 
     fn printed(all: &[Sexpr]) -> String {
         let one = |one: &Sexpr| match one {
-            Sexpr::Word(word) => word.clone(),
+            Sexpr::Word(word, _) => word.clone(),
             Sexpr::List(list, _) => format!("({})", printed(list)),
         };
         all.iter().map(one).collect::<Vec<_>>().join(" ")

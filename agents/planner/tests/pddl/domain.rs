@@ -36,7 +36,7 @@ impl Domain {
         }
         let problem = definition(problem, "problem");
         assert_eq!(problem[2].head(), Some(":domain"));
-        assert_eq!(problem[2].list()[1], domain[1].list()[1], "the problem is of another domain");
+        assert_eq!(problem[2].list()[1].word(), domain[1].list()[1].word(), "the problem is of another domain");
         for section in &problem[3..] {
             match section.head() {
                 Some(":objects") => {}
@@ -185,7 +185,7 @@ fn definition(text: &str, kind: &str) -> Vec<Sexpr> {
 
 fn printed(expression: &Sexpr) -> String {
     match expression {
-        Sexpr::Word(word) => word.clone(),
+        Sexpr::Word(word, _) => word.clone(),
         Sexpr::List(parts, _) => format!("({})", parts.iter().map(printed).collect::<Vec<_>>().join(" ")),
     }
 }

@@ -10,6 +10,8 @@ VERSION: str
 CHOICES: list[tuple[str, bool]]
 """The kinds of actions of environments, and whether each is done to an object."""
 ROOMS: list[str]
+PACKS: list[str]
+"""The names of the world packs that come with the program."""
 KINDS: list[str]
 COLORS: list[str]
 FLUIDS: list[str]
@@ -444,6 +446,9 @@ class Session:
     def name(self) -> str: ...
     @property
     def mission(self) -> str: ...
+    @property
+    def mission_text(self) -> str:
+        """The mission file (CDF), as JSON."""
     @property
     def seed(self) -> int: ...
     @property

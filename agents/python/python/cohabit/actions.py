@@ -124,15 +124,18 @@ class LookAround:
 
 @dataclass(frozen=True)
 class GoTo:
-    """Walk to an object, a room (``"Lab1"``), a room's viewpoint (``("Lab1", 3)``) or a point ``(x_m, y_m)``."""
+    """Walk to an object, a room (``"Lab1"``), a room's viewpoint (``("Lab1", 3)``) or a point ``(x_m, y_m)``, of which a third number,
+    the height, says nothing: the ``position`` of a body or an object is one."""
 
-    target: Union[ObjectRef, tuple[str, int], tuple[float, float]]
+    target: Union[ObjectRef, tuple[str, int], tuple[float, float], tuple[float, float, float]]
 
     def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
         target = self.target
         if isinstance(target, tuple):
-            first, second = target
+            if len(target) not in (2, 3):
+                raise ValueError(f"`target` is {target!r}: a room and a viewpoint's number, or a point (x_m, y_m)")
+            first, second = target[:2]
             if isinstance(first, str):
                 return _native.Action.go_to_viewpoint(first, int(second))
             return _native.Action.go_to_point(float(first), float(second))

@@ -17,14 +17,21 @@ _STREAM = 0x5317E
 """Keeps the draw of a mission apart from all else that follows from the same seed."""
 
 World = Union[str, "os.PathLike[str]", Sequence[Union[str, "os.PathLike[str]"]]]
-"""The folder of a world pack, or several of them in their order, each of which may add to those before it."""
+"""The folder of a world pack, or the name of one that comes with the program (``"homes"``), or several of them in their order, each of
+which may add to those before it."""
 
 
 def world_folders(world: World) -> list[str]:
-    """The folders of world packs, as paths that hold wherever this process goes."""
+    """The folders of world packs, as paths that hold wherever this process goes; names of packs that come with the program stay names."""
     folders: list[Union[str, os.PathLike[str]]]
     folders = [world] if isinstance(world, (str, os.PathLike)) else list(world)
-    return [os.path.abspath(folder) for folder in folders]
+    return [_pack(os.fspath(folder)) for folder in folders]
+
+
+def _pack(folder: str) -> str:
+    """Where a pack lies; of one that comes with the program its name, as commands take it: a folder of that name comes first."""
+    is_name = folder in _native.PACKS and not os.path.exists(folder)
+    return folder if is_name else os.path.abspath(folder)
 
 
 @dataclass(frozen=True, repr=False)

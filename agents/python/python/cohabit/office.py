@@ -16,7 +16,7 @@ Observations are dictionaries. Pictures are those of each body's camera; all els
 ``slot_ids``         ``[S]`` u4              the id of each slot's object in the id plane; 0 is empty
 ``slot_classes``     ``[S]`` i8              its class, as ``held``
 ``slot_positions``   ``[S, 3]`` f4           where it is from the body: ahead, to the left, up, m
-``slot_states``      ``[S, 25]`` 0, 1        its states, in the order of ``cohabit.FLAGS``
+``slot_states``      ``[S, 28]`` 0, 1        its states, in the order of ``cohabit.FLAGS``
 ``instruction``      text                    what the robot is told to do, if it is asked for
 ===================  ======================  =================================================================
 
@@ -202,8 +202,8 @@ class Office:
     :param instruction: whether an observation has what the robot is told to do; it is in the info in any case.
     :param knows: which objects an action in words may name: ``"everything"`` there is, or what the body has ``"seen"`` in this
         episode: what was in its slots, in its pictures (if they have ids), or in its hand.
-    :param world: the folder of a world pack, or several in their order: floor plans, objects, devices and missions beside the
-        built-in ones. Left out, it is that of the suite that is played.
+    :param world: the folder of a world pack, or the name of one that comes with the program (``"homes"``), or several in their
+        order: floor plans, objects, devices and missions beside the built-in ones. Left out, it is that of the suite that is played.
     :param many: whether all bodies are played, those of the mission too.
     """
 
@@ -258,6 +258,7 @@ class Office:
             drawn = self.sensing.drawn
             self.world = Guest(session, self._eyes(session.body) if drawn else None, drawn, self.sensing.size)
             self.mission_name = session.peer.mission
+            self.instruction = instruction_in(None, session.peer.mission_text)
         self.kinds = tuple(self.world.kinds())
         self.observation_space = self.sensing.observation_space()
         self.action_space = self.sensing.action_space()
@@ -345,7 +346,7 @@ class Office:
             observation: Observation = {}
             if frame is not None:
                 for plane in self.planes:
-                    observation[plane] = frame[plane]
+                    observation[plane] = _own(frame[plane]) if isinstance(self.world, Guest) else frame[plane]
             observation["position"] = senses.position
             observation["heading"] = np.array([senses.yaw_rad, senses.head_pitch_rad], np.float32)
             observation["room"] = senses.room
@@ -376,6 +377,13 @@ class Office:
         """What somebody behind a body sees, ``[H, W, 3]``."""
         (frame,) = self.world.look([f"watch-{body}"])
         return np.ascontiguousarray(frame.color[..., :3])
+
+
+def _own(plane: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """A picture in memory of its own: of a camera of a session no more than eight can be held, and who trains keeps more."""
+    own = plane.copy()
+    own.flags.writeable = False
+    return own
 
 
 def _mask(senses: _native.Senses) -> ActionMask:

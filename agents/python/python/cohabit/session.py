@@ -36,6 +36,10 @@ class Session:
     def __init__(self, name: str, body: int = 0, take_over: bool = False, timeout: float = 5.0) -> None:
         self.body = body
         self.peer = _native.Session(name, body, timeout)
+        last = len(self.peer.state(timeout).bodies) - 1
+        if body > last:
+            adds = "`cohabit play --body robot` adds one"
+            raise ValueError(f"session `{name}` has no body {body}: it has bodies 0 to {last}; {adds}")
         self.take_over = take_over
         self._claimed = False
         self._attends = False
@@ -69,7 +73,8 @@ class Session:
         """
         outcome = self.peer.claim(take_over).wait(_ANSWER_S)
         if not outcome:
-            raise _native.Error(f"{outcome.detail} (`take_over=True` does that)")
+            remedy = "" if take_over else " (`take_over=True` does that)"
+            raise _native.Error(f"{outcome.detail}{remedy}")
         self._claimed = True
 
     def release(self) -> None:
@@ -188,6 +193,6 @@ def join(name: str, body: int = 0, take_over: bool = False, timeout: float = 5.0
     Looking and listening is free to all; the body is claimed by the first command. If another commands it then, as the
     session's own agent does body 0, it has to be taken over (``take_over=True``), and goes back when this one lets go.
 
-    Raises :class:`cohabit.Error` if there is no such session.
+    Raises :class:`cohabit.Error` if there is no such session, and ``ValueError`` if it has no such body.
     """
     return Session(name, body, take_over, timeout)

@@ -7,7 +7,7 @@ use cohabit_cdf::{Fluid, ObjectId, Property, state::StateFlag};
 use crate::{
     answer::{
         Answerer,
-        claim::{Claim, Filling},
+        claim::{Claim, Filling, asked_state},
     },
     ground::{
         has_state,
@@ -17,6 +17,7 @@ use crate::{
     read::{
         phrase::{Phrase, RelationKind},
         question::Question,
+        reader::Reader,
         saying,
     },
     understanding::Understanding,
@@ -118,6 +119,11 @@ impl Answerer<'_> {
     }
 
     fn is_in_state(&self, id: ObjectId, state: StateWord, words: &[String]) -> Understanding {
+        if let StateWord::Filled(is_full) = state
+            && let Some(answer) = self.is_stocked(id, is_full)
+        {
+            return answer;
+        }
         let holds = self.scene.object(id).is_some_and(|object| self.is_so(object, state));
         let (the, words) = (self.short(id), words.join(" "));
         let is_lit = self.scene.object(id).is_some_and(|object| self.devices.is_lit(object.class));
@@ -133,6 +139,22 @@ impl Answerer<'_> {
             format!("{the} {} not {words}", prose::is(&the))
         };
         self.told(holds, &text, id)
+    }
+
+    /// Whether what things are put into, and nothing is poured, is full or empty, where more is asked than whether anything is in it:
+    /// what it has not looked into may be either, and how much more goes in nobody told.
+    fn is_stocked(&self, id: ObjectId, is_full: bool) -> Option<Understanding> {
+        let class = self.catalog.class(self.scene.object(id)?.class);
+        if class.receptacle.is_none() || class.has(Property::Fillable) {
+            return None;
+        }
+        match contents::inside(self.catalog, self.scene, id, 0) {
+            None => self.unopened(id),
+            Some(inside) => is_full.then(|| {
+                let text = format!("I cannot tell whether {} is full: {inside}.", self.short(id));
+                Understanding::about(text, vec![id])
+            }),
+        }
     }
 
     /// Whether all of several are in a state, and which are not.
@@ -154,7 +176,7 @@ impl Answerer<'_> {
     }
 
     /// Whether any of several is in a state, and which are: `is any plate dirty`.
-    fn any_in_state(&self, phrase: &Phrase, state: StateWord, words: &[String]) -> Understanding {
+    pub(crate) fn any_in_state(&self, phrase: &Phrase, state: StateWord, words: &[String]) -> Understanding {
         let Ok(all) = self.each_meant(phrase, state) else { return self.unseen(phrase) };
         let is_in = |id: &ObjectId| self.scene.object(*id).is_some_and(|object| self.is_so(object, state));
         let found: Vec<ObjectId> = all.iter().copied().filter(is_in).collect();
@@ -175,6 +197,16 @@ impl Answerer<'_> {
             () if phrase.text.starts_with("both ") => ground.all(phrase, &want),
             () => ground.everywhere(phrase, &want),
         }
+    }
+
+    /// The state that is asked for behind what is named, and nothing else: `lights still on`.
+    pub(crate) fn state_after_name<'q>(&'q self, question: &'q Question) -> Option<(StateWord, &'q [String])> {
+        let said = &self.lexicon.yes_no;
+        let mut reader = Reader::new(self.lexicon, &question.rest);
+        reader.phrase_with_place()?;
+        let left = said.without_fillers(reader.rest());
+        let (state, words) = asked_state(self.lexicon, left).filter(|(_, words)| left.ends_with(words))?;
+        said.is_filler(&left[..left.len() - words.len()]).then_some((state, words))
     }
 
     /// What is in a state here: `is anything broken`.

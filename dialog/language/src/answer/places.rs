@@ -6,7 +6,7 @@ use crate::{
     answer::{Answerer, NEIGHBOURS},
     ground::{self, want::Want},
     known::{KnownObject, contents, describe, floor, memory},
-    read::{phrase::Phrase, saying},
+    read::{phrase::Phrase, question::Question, saying},
     understanding::Understanding,
     words::{
         intent::Intent,
@@ -143,19 +143,45 @@ impl Answerer<'_> {
         Understanding::whether(true, text, Vec::new())
     }
 
-    /// What lies about on the floor of this room.
-    pub(crate) fn on_floor(&self) -> Understanding {
+    /// Whether a question is about the floor, and not about a floor lamp.
+    pub(crate) fn is_about_floor(&self, question: &Question) -> bool {
+        let rest = &question.rest;
+        let is_floor = |at: usize| {
+            let is_name = self.lexicon.classes.longest(&rest[at..]).is_some_and(|(length, _)| length > 1);
+            !is_name && self.lexicon.yes_no.says_floor(&rest[at..=at])
+        };
+        (0..rest.len()).any(is_floor)
+    }
+
+    /// What lies about on the floor of a room, or of this one.
+    pub(crate) fn on_floor(&self, room: Option<RoomId>) -> Understanding {
+        let here = self.scene.robot.room;
+        let room = room.unwrap_or(here);
+        let place = if room == here { "here".to_owned() } else { format!("in the {}", room.name_in(self.catalog)) };
         let lies = |object: &&KnownObject| {
             let is_carried = self.catalog.class(object.class).has(Property::Pickupable);
-            is_carried && object.parent.is_none() && object.room == self.scene.robot.room
+            let is_held = self.scene.robot.held == Some(object.id);
+            is_carried && !is_held && object.parent.is_none() && object.room == room
         };
         let there: Vec<&KnownObject> = self.scene.objects.iter().filter(lies).collect();
         let ids = there.iter().map(|object| object.id).collect();
         let listed = self.listed(&there);
         let verb = contents::verb(there.len(), &listed);
         match there.is_empty() {
-            true => Understanding::whether(false, "I see nothing on the floor here but furniture.", ids),
-            false => Understanding::whether(true, format!("On the floor there {verb} {listed}."), ids),
+            true => Understanding::whether(false, format!("I see nothing on the floor {place} but furniture."), ids),
+            false if room == here => Understanding::whether(true, format!("On the floor there {verb} {listed}."), ids),
+            false => Understanding::whether(true, format!("On the floor {place} there {verb} {listed}."), ids),
+        }
+    }
+
+    /// What lies under a thing or behind it, as far as it knows.
+    pub(crate) fn under(&self, id: ObjectId) -> Understanding {
+        match contents::under(self.catalog, self.scene, id) {
+            Some(text) => Understanding::whether(true, prose::sentence(&text), vec![id]),
+            None => {
+                let text = format!("I know of nothing under {} or behind it.", self.short(id));
+                Understanding::whether(false, text, vec![id])
+            }
         }
     }
 
@@ -197,7 +223,7 @@ impl Answerer<'_> {
     }
 
     /// That it has not looked into a thing, which is shut, and an offer to.
-    fn unopened(&self, id: ObjectId) -> Option<Understanding> {
+    pub(crate) fn unopened(&self, id: ObjectId) -> Option<Understanding> {
         let is_shut = self.scene.object(id).is_some_and(|object| memory::is_shut(self.catalog, object));
         let the = self.short(id);
         let text = format!("{} I have not looked into it yet. Shall I?", prose::sentence(&format!("{the} is closed")));

@@ -4,12 +4,16 @@ use cohabit_cdf::{ObjectId, RoomId};
 
 use crate::{
     answer::{Answerer, NEIGHBOURS, claim::asked_state},
+    context::awaited::Until,
     ground::want::Want,
     read::{phrase::Phrase, question::Question, slot, whether},
     say::{reply, report},
     understanding::Understanding,
     words::{intent::Intent, prose},
 };
+
+/// How it begins to repeat what it said.
+const SAID: &str = "I said: \"";
 
 impl Answerer<'_> {
     pub(crate) fn holding(&self) -> Understanding {
@@ -42,10 +46,44 @@ impl Answerer<'_> {
     }
 
     pub(crate) fn doing(&self) -> Understanding {
-        Understanding::answer(match self.context.running.first() {
-            Some(step) => format!("I am {}.", step.says),
+        Understanding::answer(match self.under_way() {
+            Some(doing) => format!("I am {doing}."),
             None => "I am waiting for you to tell me what to do.".to_owned(),
         })
+    }
+
+    /// What it is doing: what it looks for, the step that it is at, or what it waits for.
+    fn under_way(&self) -> Option<String> {
+        let context = self.context;
+        let target = context.search.as_ref().and_then(|search| search.target.as_ref());
+        let sought = target.filter(|target| !target.is_hasty).map(|target| format!("looking for {}", target.said));
+        let step = || context.running.iter().map(|step| step.says.clone()).find(|says| !says.is_empty());
+        let waits = || {
+            let until = &context.awaited.first()?.until;
+            Some(match until {
+                Until::Seconds(_) => format!("waiting for {}", until.in_words()),
+                Until::So(_) => format!("waiting until {}", until.in_words()),
+            })
+        };
+        sought.or_else(step).or_else(waits)
+    }
+
+    /// Whether it has done what it was told last.
+    pub(crate) fn finished(&self) -> Understanding {
+        if let Some(doing) = self.under_way() {
+            return Understanding::whether(false, format!("Not yet: I am {doing}."), Vec::new());
+        }
+        if let Some(failure) = &self.context.failed {
+            let text = format!("No, I did not finish {}: {}.", failure.step.says, report::cause(failure.status));
+            return Understanding::whether(false, text, Vec::new());
+        }
+        if self.context.left_undone > 0 {
+            return Understanding::whether(false, "No, I was told to stop before I had done it.", Vec::new());
+        }
+        match self.context.deeds.told_of_last() {
+            Some(told) => Understanding::whether(true, format!("Yes: {told}."), Vec::new()),
+            None => Understanding::answer("I have done nothing yet."),
+        }
     }
 
     pub(crate) fn goals(&self) -> Understanding {
@@ -80,6 +118,16 @@ impl Answerer<'_> {
         if let Some(chosen) = about.and_then(|phrase| self.why_this_one(phrase)) {
             return chosen;
         }
+        let deed = whether::deed_asked_about(self.lexicon, self.catalog, &question.rest).map(|clause| clause.intent);
+        let want = Want::place(Intent::Find, &[], None);
+        let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
+        let is_denied = question.rest.iter().any(|word| self.lexicon.ifs.negations.contains(word));
+        // What it did is told although something else failed or was refused since.
+        let is_done = deed.zip(object).is_some_and(|(intent, id)| !is_denied && self.context.deeds.did(intent, id));
+        if is_done || !is_about_deeds(&question.rest) {
+            let why = self.context.deeds.why(deed, object);
+            return Understanding::answer(why.map_or_else(|| "I do not know why.".to_owned(), |why| format!("{why}.")));
+        }
         if let Some(failure) = &self.context.failed {
             let cause = report::cause(failure.status);
             return Understanding::answer(match failure.step.says.as_str() {
@@ -90,9 +138,6 @@ impl Answerer<'_> {
         if let Some(refused) = &self.context.refused {
             return Understanding::answer(refused);
         }
-        let deed = whether::deed_asked_about(self.lexicon, self.catalog, &question.rest).map(|clause| clause.intent);
-        let want = Want::place(Intent::Find, &[], None);
-        let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
         if let Some(not) = self.not_asked_for(object, &question.rest) {
             return Understanding::answer(not);
         }
@@ -135,6 +180,14 @@ impl Answerer<'_> {
             None => format!("I did not do that, as far as I remember: I found {the} so, and do not know why."),
         };
         Understanding::about(text, vec![id])
+    }
+
+    /// What it said last, in the same words however often it is asked.
+    pub(crate) fn said(&self) -> Understanding {
+        let last = self.context.lines.iter().rfind(|(is_robot, _)| *is_robot).map(|(_, text)| text.as_str());
+        let Some(last) = last else { return Understanding::answer("I have not said anything yet.") };
+        let repeated = last.strip_prefix(SAID).and_then(|said| said.strip_suffix('"'));
+        Understanding::answer(format!("{SAID}{}\"", repeated.unwrap_or(last)))
     }
 
     /// What it did last, or to a thing.
@@ -196,6 +249,12 @@ impl Answerer<'_> {
             None => Understanding::whether(false, "I see nobody here.", Vec::new()),
         }
     }
+}
+
+/// Whether it is asked why about what it did: `why`, `why did you do that`, but not `why is the milk in the fridge`.
+fn is_about_deeds(asked: &[String]) -> bool {
+    const DEEDS: [&str; 8] = ["you", "your", "we", "i", "it", "that", "this", "so"];
+    asked.is_empty() || asked.iter().any(|word| DEEDS.contains(&word.as_str()))
 }
 
 fn empty_handed(text: &str) -> Understanding {

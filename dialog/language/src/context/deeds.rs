@@ -100,12 +100,22 @@ impl Deeds {
     /// What it did for the last request, in words, and before: `I opened the fridge and picked up the milk. Before that I closed the door`;
     /// nothing, where it did nothing yet.
     pub(crate) fn told(&self) -> Option<String> {
-        let last = self.0.last()?;
-        let same = self.0.iter().rev().take_while(|deed| deed.reason == last.reason).count();
-        let (earlier, of_last) = self.0.split_at(self.0.len() - same);
-        let told = format!("I {}", listed(of_last.iter(), TOLD));
-        let before = listed(main_deeds(earlier), EARLIER);
+        let told = self.told_of_last()?;
+        let before = listed(main_deeds(self.by_request().0), EARLIER);
         Some(if before.is_empty() { told } else { format!("{told}. Before that I {before}") })
+    }
+
+    /// The same without what it did before.
+    pub(crate) fn told_of_last(&self) -> Option<String> {
+        let (_, of_last) = self.by_request();
+        (!of_last.is_empty()).then(|| format!("I {}", listed(of_last.iter(), TOLD)))
+    }
+
+    /// What it did for earlier requests, and for the last one.
+    fn by_request(&self) -> (&[Deed], &[Deed]) {
+        let is_of_last = |deed: &&Deed| self.0.last().is_some_and(|last| deed.reason == last.reason);
+        let same = self.0.iter().rev().take_while(is_of_last).count();
+        self.0.split_at(self.0.len() - same)
     }
 
     /// Why it did something of that kind last, to this thing or with it where one is named, and what goals that met; nothing, where no deed

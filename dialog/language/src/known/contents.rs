@@ -61,6 +61,7 @@ pub(crate) fn under(catalog: &Catalog, scene: &Known, id: ObjectId) -> Option<St
     let reach_m = 0.5 * width.max(depth) + BESIDE_M;
     let is_there = |other: &&KnownObject| {
         other.id != id
+            && scene.robot.held != Some(other.id)
             && other.room == thing.room
             && other.parent.is_none()
             && thing.parent != Some(other.id)

@@ -53,6 +53,8 @@ pub(crate) enum Act {
     Do(Verb),
     /// Turns the tool off.
     Rest,
+    /// Turns off what ran for it alone.
+    RunNoMore,
 }
 
 /// All that is known of devices.
@@ -236,7 +238,8 @@ impl WayEntry {
             _ => return None,
         };
         let runs = has_to_run(rule, Term::It);
-        let steps = [Act::Hold].into_iter().chain(runs.then_some(Act::Run)).chain([act]).collect();
+        let run = |act| runs.then_some(act);
+        let steps = [Act::Hold].into_iter().chain(run(Act::Run)).chain([act]).chain(run(Act::RunNoMore)).collect();
         let fluid = changes(&rule.effects).find_map(fluid_of);
         Some(self.process(places, [Vec::new(), Vec::new()], steps, fluid, catalog))
     }

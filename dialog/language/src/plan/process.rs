@@ -274,6 +274,7 @@ impl Planner<'_> {
         // What hangs somewhere and is wet is hung up again: it dries as it is hung up.
         let is_hung = process.steps == [Act::Hold, Act::Place];
         let is_inside = !is_hung && self.scene.object(object).is_some_and(|known| known.parent == Some(place));
+        let mut runs_for_it = false;
         for act in &process.steps {
             match act {
                 // What is in the device already stays there, unless it must be in the hand for what follows.
@@ -284,7 +285,7 @@ impl Planner<'_> {
                 Act::Open => self.open_quietly(place),
                 Act::Close => self.close_quietly(place),
                 Act::Start => self.start(process, place, color)?,
-                Act::Run => self.run_water(place),
+                Act::Run => runs_for_it = self.run_water(place),
                 // What lies before a ray, and was not put there for it, stays.
                 Act::Take if is_inside && !self.has(place, Property::Openable) => {}
                 Act::Take => self.take(object),
@@ -305,6 +306,12 @@ impl Planner<'_> {
                     // What it was done to is spoken of, not the tool.
                     self.focus.mention(object);
                 }
+                // What ran before is left running.
+                Act::RunNoMore if runs_for_it => {
+                    self.interact(Verb::Toggle, place, "turning off");
+                    self.focus.mention(object);
+                }
+                Act::RunNoMore => {}
             }
         }
         Ok(())
@@ -337,11 +344,13 @@ impl Planner<'_> {
         self.push(Action::PickUp { object }, says);
     }
 
-    fn run_water(&mut self, sink: ObjectId) {
+    /// Lets the water run, if it does not run yet; whether that was to be done.
+    fn run_water(&mut self, sink: ObjectId) -> bool {
         let runs = self.scene.object(sink).is_some_and(|known| known.has(StateFlag::Toggled));
         if !runs {
             self.interact(Verb::Toggle, sink, "turning on");
         }
+        !runs
     }
 
     fn start(&mut self, process: &Process, place: ObjectId, color: Option<&str>) -> Result<(), Fault> {

@@ -4,7 +4,11 @@ use cohabit_cdf::state::StateFlag;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    read::{phrase::Phrase, reader::Reader, segments},
+    read::{
+        phrase::{Phrase, Place},
+        reader::Reader,
+        segments,
+    },
     words::{
         lexicon::{Lexicon, Preposition, Pronoun, StateWord},
         question_kind::{QuestionKind, Shape},
@@ -126,6 +130,9 @@ fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     }
     if kind == QuestionKind::Count {
         rest = without_existence(&rest);
+    }
+    if matches!(kind, QuestionKind::State | QuestionKind::Where | QuestionKind::Count) {
+        rest = with_state_last(lexicon, &rest);
     }
     // `are the lights off`: all of them.
     let is_of_several = kind == QuestionKind::State && matches!(first[start - 1].as_str(), "are" | "were");
@@ -260,6 +267,24 @@ fn without_existence(words: &[String]) -> Vec<String> {
         Some((at, length)) => words[..at].iter().chain(&words[at + length..]).cloned().collect(),
         None => words.to_vec(),
     }
+}
+
+/// `the light on in the kitchen`: the light there, and its state.
+fn with_state_last(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
+    let mut reader = Reader::new(lexicon, words);
+    let is_named = reader.phrase().is_some_and(|phrase| !phrase.namings.is_empty());
+    let (thing, rest) = words.split_at(reader.at);
+    let switched = usize::from(rest.first().is_some_and(|word| matches!(word.as_str(), "on" | "off")));
+    let length = lexicon.states.longest(rest).map_or(switched, |(length, _)| length);
+    let (state, place) = rest.split_at(length);
+    let mut reader = Reader::new(lexicon, place);
+    let is_there = |place: &Place| !matches!(place, Place::Object(phrase) if phrase.namings.is_empty());
+    let is_placed = !lexicon.yes_no.is_filler(place)
+        && matches!(reader.place(), Some((Preposition::In | Preposition::On | Preposition::At, place)) if is_there(&place));
+    if is_named && length > 0 && is_placed && lexicon.yes_no.is_filler(reader.rest()) {
+        return [thing, place, state].concat();
+    }
+    words.to_vec()
 }
 
 /// The first thing that the words name.

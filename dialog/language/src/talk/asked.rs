@@ -49,7 +49,7 @@ impl Conversation<'_> {
         let is_command = (small.is_empty() || is(Small::Search))
             && !is_place
             && parts.iter().any(|part| matches!(part, Part::Clause(_)));
-        let is_yes = self.small_at_start(words, Small::Yes) && !is_command;
+        let is_yes = (self.small_at_start(words, Small::Yes) || is(Small::Resume)) && !is_command;
         let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
         if leaves && !is_command && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1) {
             return Some(Understanding::answer(LEAVES));

@@ -223,6 +223,7 @@ impl Conversation<'_> {
             QuestionKind::Where
             | QuestionKind::Holding
             | QuestionKind::Contents
+            | QuestionKind::Under
             | QuestionKind::Danger
             | QuestionKind::People => true,
             _ => false,

@@ -101,7 +101,8 @@ impl Conversation<'_> {
         // Only what it has not seen makes it ask back.
         if let (Understanding::Question { .. }, Some(phrase)) = (&answer, &question.about) {
             let clause = match question.kind {
-                QuestionKind::Contents if self.is_known(phrase) => {
+                // `is the fridge empty`
+                QuestionKind::Contents | QuestionKind::State if self.is_known(phrase) => {
                     Clause::about(Intent::LookIn, "look in", phrase.clone())
                 }
                 _ => {

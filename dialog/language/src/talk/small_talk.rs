@@ -8,6 +8,10 @@ use crate::{
     words::{lexicon::Small, question_kind::QuestionKind, token::MAX_CHARS},
 };
 
+/// What is said to who has it go on, while it does so, and where there is nothing to go on with.
+const GOES_ON: &str = "I am still at it.";
+const NOTHING_HALTED: &str = "There is nothing that I could go on with. What shall I do?";
+
 impl Conversation<'_> {
     /// The reply to what asks for nothing to be done.
     pub(crate) fn chat(&self, words: &[String]) -> Option<&str> {
@@ -61,7 +65,15 @@ impl Conversation<'_> {
     pub(crate) fn small_talk(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
         let small = self.small(words);
         let is = |kind| small.contains(&kind);
+        // `go on then` agrees, too.
+        if is(Small::Resume) && (context.halted.is_some() || !is(Small::Yes)) {
+            return Some(self.resume(context));
+        }
         if is(Small::Again) && !context.last_plan.is_empty() {
+            // `repeat that`, after an answer; `do it again` is of a deed.
+            if context.question.is_some() && words.iter().any(|word| word == "repeat") {
+                return Some(self.answerer(context, 0).said());
+            }
             let steps = match context.failed.take() {
                 Some(failure) => std::iter::once(failure.step).chain(failure.rest).collect(),
                 // As things are now: what is switched on already is not switched once more.
@@ -109,6 +121,19 @@ impl Conversation<'_> {
         let is_called =
             || self.scene.person.is_some() && parts::parts(self.lexicon, self.catalog, words).iter().any(comes);
         self.chat(words).filter(|_| !is_called()).map(Understanding::answer)
+    }
+
+    /// Goes on with what was stopped.
+    fn resume(&self, context: &mut Context) -> Understanding {
+        if context.is_busy() {
+            return Understanding::answer(GOES_ON);
+        }
+        let goes_on = match context.take_halted() {
+            Some(halted) if halted.steps.is_empty() => self.carry_on(context),
+            Some(halted) => Some(self.go_as_guessed(halted, context)),
+            None => None,
+        };
+        goes_on.unwrap_or_else(|| Understanding::answer(NOTHING_HALTED))
     }
 
     /// `do not follow me any more`, to a robot that follows.

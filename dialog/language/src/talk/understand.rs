@@ -98,6 +98,7 @@ impl Conversation<'_> {
     /// It stops, and then does what else was asked for.
     pub(crate) fn stopped(&self, rest: &str, context: &mut Context) -> Understanding {
         context.pending = None;
+        context.halt();
         if !context.running.is_empty() && context.last_plan.ends_with(&context.running) {
             context.left_undone = context.running.len();
         }

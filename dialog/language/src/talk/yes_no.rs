@@ -14,12 +14,16 @@ use crate::{
         parts,
         phrase::{Phrase, Place},
         question::{self, Question},
+        reader::Reader,
         whether,
     },
     talk::conversation::Conversation,
     understanding::Understanding,
-    words::{intent::Intent, lexicon::Preposition, prose, question_kind::QuestionKind},
+    words::{intent::Intent, lexicon::Preposition, prose, question_kind::QuestionKind, token},
 };
+
+/// Verbs of leaving something as it is, in a question whether that was done.
+const LEFT: [&str; 2] = ["leave", "left"];
 
 impl Conversation<'_> {
     /// The answer to a question among what was said that would otherwise be carried out; nothing, where there is none.
@@ -58,6 +62,9 @@ impl Conversation<'_> {
 
     /// Whether what is asked is so.
     fn whether(&self, asked: &[String], context: &mut Context) -> Understanding {
+        if let Some(question) = self.left_so(asked) {
+            return self.answer(&question, context);
+        }
         if let Some(answer) = self.whether_done(asked, context) {
             return answer;
         }
@@ -75,6 +82,21 @@ impl Conversation<'_> {
             }
             _ => Understanding::answer("I cannot say. Tell me to do it, and I will try."),
         }
+    }
+
+    /// `did you leave the oven on`, `did somebody leave the window open`: whether it is so now, whoever left it; of several, any of them.
+    fn left_so(&self, asked: &[String]) -> Option<Question> {
+        let words = &self.lexicon.yes_no;
+        let (helper, done) = asked.split_first()?;
+        let at = done.iter().position(|word| LEFT.contains(&word.as_str()))?;
+        let is_asked = words.past.contains(helper) || words.perfect.contains(helper);
+        let rest: Vec<String> = done[at + 1..].iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
+        asked_state(self.lexicon, &rest).filter(|_| is_asked)?;
+        let it = || Reader::new(self.lexicon, &rest).phrase().filter(|phrase| phrase.pronoun.is_some());
+        let about = question::named(self.lexicon, &rest).or_else(it)?;
+        let is_any = about.is_any || about.is_all || prose::is(&about.text) == "are";
+        let about = Phrase { is_any, is_all: false, ..about };
+        Some(Question { is_whether: true, ..Question::new(QuestionKind::State, Some(about), rest) })
     }
 
     /// `did you close the fridge`: whether it did, as it remembers, and how things are now.
@@ -125,7 +147,9 @@ impl Conversation<'_> {
             format!("{the} {} {state}", prose::is(&the))
         });
         let is_put = clause.intent == Intent::Place && !clause.places.is_empty();
+        let is_undone = state.as_ref().is_some_and(|state| !is_so(state));
         let text = match (did, stated) {
+            (true, Some(stated)) if is_undone => format!("I did, but now {stated}."),
             (true, Some(stated)) => format!("Yes, I did: {stated}."),
             (false, Some(stated)) if state.as_ref().is_some_and(is_so) => format!("No, but {stated}."),
             (false, Some(stated)) => format!("No, {stated}."),

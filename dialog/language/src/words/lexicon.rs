@@ -156,6 +156,8 @@ pub(crate) enum Small {
     Thanks,
     Again,
     Undo,
+    /// Go on with what was stopped.
+    Resume,
     /// Do what the mission wants next.
     Goal,
     Mission,

@@ -14,11 +14,15 @@ pub(crate) enum QuestionKind {
     Where,
     Abilities,
     Doing,
+    /// Whether it has done what it was told.
+    Finished,
     Goals,
     Seeing,
     Contents,
     /// What is next to it.
     Near,
+    /// What lies under it or behind it.
+    Under,
     Color,
     Distance,
     Text,
@@ -50,6 +54,8 @@ pub(crate) enum QuestionKind {
     Which,
     /// What else there is, after a list.
     Rest,
+    /// What it said last.
+    Said,
     /// Whether the session is recorded.
     Recording,
     Time,
@@ -68,6 +74,7 @@ impl QuestionKind {
                 | Self::DoneSoFar
                 | Self::Danger
                 | Self::Rest
+                | Self::Said
                 | Self::Recording
                 | Self::Time
                 | Self::People

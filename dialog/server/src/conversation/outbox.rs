@@ -32,7 +32,7 @@ pub enum Outgoing {
         /// Its steps.
         steps: Vec<Step>,
     },
-    /// How far a plan is: to the pages, not kept.
+    /// How far a plan is: to the pages, kept for those that come before its turn is over.
     Progress {
         /// The turn that it is for.
         turn: u64,

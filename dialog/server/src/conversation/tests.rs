@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cohabit_bus::message::{BodyRecord, NONE, StateParts, StateView};
+use cohabit_bus::message::{BodyRecord, NONE, ObjectRecord, StateParts, StateView};
 use cohabit_cdf::{BodyId, Catalog, Layout, RoomId};
 use cohabit_language::Knows;
 use cohabit_speech::Recognition;
@@ -12,10 +12,27 @@ use crate::spoken::Spoken;
 
 /// What a robot knows that stands in an empty break room.
 pub(super) fn knowledge() -> Knowledge {
+    knowledge_with(&[])
+}
+
+/// The same of a break room with things of these classes, a metre before the robot.
+fn knowledge_with(classes: &[&str]) -> Knowledge {
     let (catalog, layout) = (Arc::new(Catalog::builtin()), Layout::builtin("OfficeLayout1").unwrap());
     let room = RoomId::BUILTIN.iter().position(|room| *room == RoomId::BREAK_ROOM).unwrap() as u32;
     let body = BodyRecord { room, held: NONE, position_m: [4.0, 10.0, 0.0], ..BodyRecord::default() };
-    let parts = StateParts { bodies: vec![body], ..StateParts::default() };
+    let thing = |(object, class): (u32, &&str)| ObjectRecord {
+        object,
+        class: catalog.find(class).unwrap().0,
+        room: room as u8,
+        parent: NONE,
+        held_by: NONE,
+        works: NONE,
+        position_m: [5.0, 10.0, 0.0],
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        ..ObjectRecord::default()
+    };
+    let objects = (0..).zip(classes).map(thing).collect();
+    let parts = StateParts { bodies: vec![body], objects, ..StateParts::default() };
     let mut bytes = vec![0_u64; parts.bytes().div_ceil(8)];
     let bytes = &mut bytemuck::cast_slice_mut(&mut bytes)[..parts.bytes()];
     parts.write(bytes);
@@ -94,6 +111,18 @@ fn a_stop_is_carried_out_before_what_else_was_said() {
     assert_eq!(says(&outbox), "OK, I stop. My hand is empty.");
     let ends = outbox.iter().filter(|item| matches!(item, Outgoing::TurnEnded { .. })).count();
     assert_eq!(ends, 1);
+}
+
+#[test]
+fn a_question_meanwhile_ends_nothing_that_the_robot_is_at() {
+    let (mut conversation, knowledge) = (conversation(), knowledge_with(&["Bowl_01"]));
+    let (_, outbox) = conversation.hear("where is the bowl?", &knowledge);
+    assert!(plans(&outbox) && says(&outbox).contains("bowl"), "at rest it points: {}", says(&outbox));
+    let (_, outbox) = conversation.hear("go to the main office", &knowledge);
+    assert!(plans(&outbox));
+    let (turn, outbox) = conversation.hear("where is the bowl?", &knowledge);
+    assert!(!plans(&outbox) && says(&outbox).contains("bowl"), "{}", says(&outbox));
+    assert!(outbox.contains(&Outgoing::TurnEnded { turn, end: TurnEnd::Answered }));
 }
 
 #[test]

@@ -200,7 +200,7 @@ impl Talk {
                 self.voice.say(&line, body.0);
             }
             Outgoing::Progress { turn, step, steps, says } => {
-                self.hub.tell(&page::progress(body.0, turn, step, steps, &says));
+                self.hub.show_progress(body.0, turn, &page::progress(body.0, turn, step, steps, &says));
             }
             Outgoing::Express { shown, .. } => self.hub.show_face(body.0, &page::expression(body.0, shown)),
             Outgoing::Interpret { turn, unclear } => {
@@ -214,7 +214,7 @@ impl Talk {
             }
             Outgoing::TurnEnded { turn, end } => {
                 self.show_state()?;
-                self.hub.tell(&page::turn_ended(body.0, turn, end.name()));
+                self.hub.end_turn(body.0, turn, &page::turn_ended(body.0, turn, end.name()));
             }
             Outgoing::Utterance { is_shown: false, .. }
             | Outgoing::Plan { .. }

@@ -127,15 +127,22 @@ impl Visit {
             let name = seen["name"].as_str().unwrap_or_default();
             self.live.talk.note_pointed(name, self.visitor()).map_err(|error| error.to_string())?;
         }
-        if let (Thing::Object(object), Some(_)) = (thing, &self.driver) {
-            self.aim.picked = Some(object);
-            return Ok(self.look(true).into_iter().collect());
-        }
         if let Thing::Object(object) = thing {
-            self.choose(object, received_nanos, true)?;
+            if may_answer(object, self.driver.is_some(), &self.hub.marked()) {
+                self.choose(object, received_nanos, true)?;
+            }
+            if self.driver.is_some() {
+                self.aim.picked = Some(object);
+                return Ok(self.look(true).into_iter().collect());
+            }
         }
         Ok(seen.iter().map(tell).collect())
     }
+}
+
+/// Whether a click on an object may answer what a robot asks. Who drives takes hold of things by clicks, so only what is numbered does.
+fn may_answer(object: ObjectId, drives: bool, numbered: &[ObjectId]) -> bool {
+    !drives || numbered.contains(&object)
 }
 
 /// The next news of who drives; pends where nobody does.
@@ -146,4 +153,17 @@ pub(super) async fn next_news(driver: &mut Option<Driver>) -> News {
         return news;
     }
     std::future::pending().await
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_drives_answers_by_a_click_on_what_is_numbered() {
+        let numbered = [ObjectId(3), ObjectId(5)];
+        for (object, drives, expected) in [(5, true, true), (7, true, false), (5, false, true), (7, false, true)] {
+            assert_eq!(may_answer(ObjectId(object), drives, &numbered), expected, "{object} {drives}");
+        }
+    }
 }

@@ -59,7 +59,7 @@ pub struct Listening {
     #[arg(long, value_name = "WHEN", default_value_t)]
     pub model: Consulting,
     /// What people are asked on the page, before they play or after: `sus` (System Usability Scale), `tlx` (NASA Task Load
-    /// Index), or a file (TOML); as often as needed
+    /// Index), `tlx_weighted`, `godspeed`, `rosas`, `trust`, `ueq_s`, `pssuq`, or a file (TOML); as often as needed
     #[arg(long = "questionnaire", value_name = "NAME|FILE")]
     pub questionnaires: Vec<String>,
     #[command(flatten)]

@@ -15,6 +15,7 @@ use crate::{
     failure::bad_input,
     mission_file::MissionFile,
     rendering::Rendering,
+    sessions,
     world::WorldPacks,
 };
 
@@ -31,9 +32,10 @@ pub struct Sim {
     supervisor: Option<i32>,
     #[command(flatten)]
     arena: ArenaOptions,
-    /// The seed of all that is random, where the mission does not fix it
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    /// The seed of all that is random, where the mission does not fix it; 0 if absent. With --arena-port it is that of the first
+    /// game, the clock's if absent, and each next game has the one after it
+    #[arg(long)]
+    seed: Option<u64>,
     /// A body beside the mission's own robot: `robot` or `person`, with a room if wanted; as often as needed
     #[arg(long = "body", value_name = "KIND[@ROOM]")]
     bodies: Vec<BodyRequest>,
@@ -60,7 +62,8 @@ impl Sim {
         let world = self.packs.read()?;
         if let Some(port) = self.arena.port() {
             let (mission, rendering) = (self.mission.as_deref(), self.rendering);
-            let games = Games { mission, seed: self.seed, bodies: &self.bodies, rendering, world: &world };
+            let seed = self.seed.unwrap_or_else(sessions::clock_seed);
+            let games = Games { mission, seed, bodies: &self.bodies, rendering, world: &world };
             return self.arena.serve(port, &games);
         }
         let (plan, before) = self.plan(&world)?;
@@ -90,7 +93,7 @@ impl Sim {
             }
             None => {
                 let file = MissionFile::find_in(self.mission.as_deref(), world)?;
-                Ok((file.plan(world.catalog(), self.seed, &self.bodies).map_err(bad_input)?, None))
+                Ok((file.plan(world.catalog(), self.seed.unwrap_or_default(), &self.bodies).map_err(bad_input)?, None))
             }
         }
     }

@@ -53,7 +53,8 @@ fn said(text: &str) -> String {
     let text = text.trim_start_matches("error: ");
     let lines =
         text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
-    lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+    // A tip about dashes on the command line leads astray in a file.
+    lines.filter(|line| !line.is_empty() && !line.starts_with("tip: to pass")).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -82,6 +83,7 @@ mod tests {
         ] {
             let said = check(arguments).expect_err("a wrong argument");
             assert!(said.contains(part) && !said.contains('\n') && !said.contains("Usage"), "{said}");
+            assert!(!said.contains("tip: to pass"), "{said}");
         }
     }
 

@@ -3,10 +3,10 @@
 use std::{fs, path::PathBuf};
 
 use cohabit_record::{Log, entry::fingerprint};
-use cohabit_study::{Apparatus, Folder, Records, all_tables, is_practice, report};
+use cohabit_study::{Apparatus, Records, all_tables, is_practice, report};
 use cohabit_tables::{Played, tables};
 
-use super::{data, read, refused, world_of};
+use super::{data, kept, refused, world_of};
 use crate::{
     failure::bad_input,
     movement::with_movement,
@@ -26,7 +26,7 @@ pub struct Report {
 impl Report {
     /// Writes it.
     pub fn run(&self) -> anyhow::Result<()> {
-        let (file, study) = read(&Folder::study_file(&self.folder))?;
+        let (file, study) = kept(&self.folder)?;
         let world = world_of(&study, file.folder())?;
         let records = Records::read(study, &self.folder).map_err(refused)?;
         let catalog = world.catalog();

@@ -272,6 +272,11 @@ fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
             "/factor/0/level/0/settings/ask: unexpected",
         ),
         ("settings = { ask = \"never\" }", "settings = { port = 80 }", "`port` is not a study's to set; leave it out"),
+        (
+            "settings = { ask = \"never\" }",
+            "settings = { page-language = \"de\" }",
+            "`page-language` is not a study's to set; it follows from `language`, a key above all tables",
+        ),
         ("settings = { ask = \"never\" }", "settings = { ask = 1979-05-27 }", "this is no value of a flag"),
         ("name = \"always\"", "name = \"never\"", "`never` is there twice"),
         ("name = \"ask\"", "name = \"ask policy\"", "cannot be the name of a column; write letters"),

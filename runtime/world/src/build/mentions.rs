@@ -1,6 +1,9 @@
 //! The objects that a mission names anywhere, without asking for them.
 
-use cohabit_cdf::{Expression, GoalState, InstancePattern, Mission, Occasion, Predicate, mission::MessageTime};
+use cohabit_cdf::{
+    Expression, GoalState, InstancePattern, Mission, Occasion, Predicate,
+    mission::{CameraView, MessageTime},
+};
 
 /// All instance ids that are named, wildcards left out, in the order of the mission; with what a machine makes, the
 /// machine.
@@ -22,6 +25,11 @@ pub(super) fn mentions(mission: &Mission) -> Vec<String> {
     for when in times.chain(mission.camera_movements.iter().map(|movement| &movement.when)) {
         if let MessageTime::Occasion(occasion) = when {
             names.occasion(occasion);
+        }
+    }
+    for movement in &mission.camera_movements {
+        if let CameraView::Object(pattern) = &movement.view {
+            names.pattern(pattern);
         }
     }
     names.0

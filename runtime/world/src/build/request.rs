@@ -277,26 +277,22 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Sticks a note at a place of a room: the one asked for, or the first that is free.
+    /// Sticks a note at a place of a room: the one asked for, or the last if there are fewer; the first that is free, if that is taken.
     fn stick(&mut self, id: ObjectId, room: RoomId, place: Option<usize>) -> Result<(), BuildError> {
         let layout = self.layout;
         let places: Vec<_> = layout.note_places.iter().filter(|place| place.room == room).collect();
-        let wanted: Vec<usize> = self
-            .mission
-            .notes
-            .iter()
-            .filter(|note| note.room == room && !places.is_empty())
-            .map(|note| note.place % places.len())
-            .collect();
-        let is_free = |index: &usize| {
-            let at = Vec3::from(places[*index].at_m);
-            !wanted.contains(index)
-                && !self.state.existing().any(|(_, object)| object.pose.position.distance(at) < 0.05)
+        let last = places.len().saturating_sub(1);
+        let notes = self.mission.notes.iter().filter(|note| note.room == room);
+        let wanted: Vec<usize> = notes.map(|note| note.place.min(last)).collect();
+        let is_taken = |index: usize| {
+            let at = Vec3::from(places[index].at_m);
+            self.state.existing().any(|(other, object)| other != id && object.pose.position.distance(at) < 0.05)
         };
-        let chosen = match place {
-            Some(place) if !places.is_empty() => Some(place % places.len()),
-            _ => (0..places.len()).find(is_free).or(if places.is_empty() { None } else { Some(0) }),
-        };
+        let free = || (0..places.len()).find(|index| !wanted.contains(index) && !is_taken(*index));
+        let asked = place.map(|place| place.min(last)).filter(|_| !places.is_empty());
+        let first = (!places.is_empty()).then_some(0);
+        // Of two notes at one place nobody would ever see the one behind.
+        let chosen = asked.filter(|index| !is_taken(*index)).or_else(free).or(asked).or(first);
         let Some(chosen) = chosen else { return self.hang_somewhere(id, room) };
         let pose = Pose::level(places[chosen].at_m.into(), wrap(places[chosen].yaw_deg.to_radians()));
         let object = self.state.at_mut(id);
@@ -343,10 +339,10 @@ impl Builder<'_> {
     fn thin_out(&mut self, index: usize) {
         let request = &self.mission.objects[index];
         let own = self.requested.get(&index).copied();
+        if let Some(id) = own.filter(|_| request.removed || request.blacklisted) {
+            self.changes().remove(id);
+        }
         if request.removed {
-            if let Some(id) = own {
-                self.changes().remove(id);
-            }
             return;
         }
         let Some(class) = self.catalog.class_of_instance(&request.instance) else { return };

@@ -48,6 +48,12 @@ impl Own {
         self.say.is_empty() && self.order.is_none() && self.expression.is_none()
     }
 
+    /// Whether it has the robot stop, and nothing else.
+    fn only_stops(&self) -> bool {
+        let stops = |order: &Order| matches!(order.steps[..], [Step { action: Action::Stop, .. }]);
+        self.say.is_empty() && self.injected.is_none() && self.order.as_ref().is_some_and(stops)
+    }
+
     pub(super) fn record(&self, outcome: DecisionOutcome) -> WizardDecision {
         let order = self.order.as_ref();
         let click = order.and_then(|order| order.click);
@@ -137,8 +143,15 @@ impl Conversation {
         knowledge: &Knowledge,
     ) -> Result<Vec<Outgoing>, String> {
         let Some(turn) = turn else { return self.act(own, knowledge) };
+        let only_stops = own.only_stops();
         self.undecided(turn)?.decided = Some(Decided { at_nanos: now_nanos, own: Some(own) });
-        Ok(self.decided(now_nanos, knowledge))
+        if !only_stops {
+            return Ok(self.decided(now_nanos, knowledge));
+        }
+        // A stop waits for no delay, whoever gives it.
+        let mut outbox = Vec::new();
+        self.release(now_nanos, knowledge, &mut outbox);
+        Ok(outbox)
     }
 
     /// What a wizard wrote or picked, as far as it can be said and done.

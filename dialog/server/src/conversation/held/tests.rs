@@ -293,6 +293,20 @@ fn what_is_said_meanwhile_waits_and_a_stop_does_not() {
 }
 
 #[test]
+fn a_wizards_stop_waits_for_no_delay() {
+    let mut conversation = with_wizard(3000, None);
+    let turn = say(&mut conversation, SAID);
+    let outbox = decide(&mut conversation, own(Some(turn), "", "stop"), 1500);
+    assert!(plans(&outbox) && says(&outbox).is_empty(), "{outbox:?}");
+    assert_eq!((outcome(&outbox), records(&outbox)[0].answered_ms), (DecisionOutcome::Replaced, Some(500.0)));
+    assert!(conversation.proposal(0).is_none());
+    // What is said is an answer, and comes when answers come.
+    let turn = say(&mut conversation, SAID);
+    let outbox = decide(&mut conversation, own(Some(turn), "I stop.", "stop"), 1500);
+    assert!(!plans(&outbox) && conversation.due(1500 * MS) == Some(4000 * MS), "{outbox:?}");
+}
+
+#[test]
 fn what_is_said_with_a_stop_is_held_back_by_itself() {
     let mut conversation = with_wizard(0, None);
     let text = "stop, and go to the reception";
