@@ -215,6 +215,9 @@ impl SymbolicState {
     }
 
     fn take(&mut self, id: ObjectId) {
+        if self.held != Some(id) {
+            self.let_go();
+        }
         self.at(id).place = Place::Held;
         self.set(id, StateFlag::PickedUp, true);
         self.held = Some(id);

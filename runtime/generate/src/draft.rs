@@ -12,7 +12,7 @@ use crate::{
     things::{is_container, is_debris, is_thing},
 };
 
-/// The doors of every floor plan.
+/// The doors that all floor plans of the built-in offices have, by their numbers.
 const DOORS: u32 = 7;
 /// What switches a circuit.
 const LEVER: &str = "FuseBox_01_Lever";
@@ -275,8 +275,11 @@ impl<'a> Draft<'a> {
     }
 
     fn finish(self, name: &str, start: RoomId, robots: &[Value], goals: Vec<Value>) -> Value {
-        let doors =
-            (1..=DOORS).map(|number| json!({ "name": format!("Door_01_{number}"), "state": [{ "isOpen": "true" }] }));
+        // A door that the floor plan lacks would be made, and stand about in a room.
+        let placed = &self.layout.placements;
+        let is_there = |door: &String| placed.iter().any(|placement| placement.instance == *door);
+        let doors = (1..=DOORS).map(|number| format!("Door_01_{number}")).filter(is_there);
+        let doors = doors.map(|door| json!({ "name": door, "state": [{ "isOpen": "true" }] }));
         let objects: Vec<Value> = self.objects.into_iter().chain(doors).map(whole).collect();
         let messages =
             json!({ "task_beginning": [], "task_procedure": [], "task_ending": [], "object_conditions": [] });

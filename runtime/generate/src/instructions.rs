@@ -17,6 +17,9 @@ pub fn instruction(world: &World, kind: ActionKind, id: ObjectId) -> String {
     let is_enclosed = world
         .object(id)
         .is_some_and(|view| world.catalog().class(view.class).receptacle.as_ref().is_some_and(|kind| kind.enclosed));
+    if let Some(word) = own_word(world, kind, id) {
+        return format!("{word} the {it}");
+    }
     match kind {
         ActionKind::GoTo => format!("go to the {it}"),
         ActionKind::PickUp => format!("pick up the {it}"),
@@ -34,4 +37,18 @@ pub fn instruction(world: &World, kind: ActionKind, id: ObjectId) -> String {
         ActionKind::Clean => format!("clean the {held}"),
         ActionKind::Examine => format!("look at the {it}"),
     }
+}
+
+/// What people say where a rule gives an action another meaning: to close a shirt is to fold it, to clean it with an iron is to iron it.
+fn own_word(world: &World, kind: ActionKind, id: ObjectId) -> Option<&str> {
+    let usual = match kind {
+        ActionKind::Open => "open",
+        ActionKind::Close => "close",
+        ActionKind::Pour => "pour",
+        ActionKind::Clean => "clean",
+        _ => return None,
+    };
+    let judgement = world.catalog().table().judge(&world.symbols(BodyId(0)), kind, id)?;
+    let words = &judgement.rule.words;
+    words.first().filter(|_| words.iter().all(|word| word != usual)).map(String::as_str)
 }

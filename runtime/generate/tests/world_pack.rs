@@ -22,6 +22,26 @@ fn the_mission_of_the_template_is_certified_by_the_planner() {
 }
 
 #[test]
+fn what_a_pack_calls_an_action_is_said_so() {
+    let world = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
+    let text = r#"
+[pools]
+layouts = ["House_Family"]
+
+[[type]]
+name = "fold"
+vars = [{ name = "a", class = ["Shirt"] }]
+goals = ["a isFolded=true"]
+"#;
+    let spec = Spec::parse("spec.toml", text, world.catalog()).unwrap();
+    let mut made = Vec::new();
+    let order = Order { count: 1, seed: 1, workers: 1 };
+    generate(&spec, world.catalog(), order, &mut |mission| made.push(mission.as_line())).unwrap();
+    let said = made[0]["utterances"].as_array().unwrap();
+    assert!(said.iter().any(|text| text == "fold the shirt"), "{said:?}");
+}
+
+#[test]
 fn missions_are_made_with_the_objects_of_a_pack_on_its_floor_plan() {
     let world = world();
     let text = r#"
@@ -37,5 +57,9 @@ goals = ["a isDirty=false"]
     let mut made = Vec::new();
     let order = Order { count: 1, seed: 1, workers: 1 };
     generate(&spec, world.catalog(), order, &mut |mission| made.push(mission.as_line())).unwrap();
-    assert_eq!(made[0]["cdf"]["scene"]["layoutOverride"], "Workshop");
+    let scene = &made[0]["cdf"]["scene"];
+    assert_eq!(scene["layoutOverride"], "Workshop");
+    let names = scene["required_objects"].as_array().unwrap().iter().filter_map(|object| object["name"].as_str());
+    let doors: Vec<&str> = names.filter(|name| name.starts_with("Door_01_")).collect();
+    assert_eq!(doors, ["Door_01_1"], "the floor plan has no other door, and none is made");
 }

@@ -192,6 +192,10 @@ impl Changes<'_> {
     }
 
     fn hold(&mut self, object: ObjectId, body: BodyId) {
+        // A hand holds one thing: what was in it falls, where a rule does not ask for an empty hand.
+        if let Some(before) = self.state.bodies[body.0 as usize].held.filter(|before| *before != object) {
+            self.let_go(before, Vec3::ZERO);
+        }
         self.detach(object);
         self.state.at_mut(object).support = Support::Held(body);
         self.state.bodies[body.0 as usize].held = Some(object);

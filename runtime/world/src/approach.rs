@@ -47,7 +47,7 @@ impl Navigation {
     /// The way to a place from which `object` is in reach, in front of it and in sight if possible.
     pub fn approach_object(&self, facts: &Facts<'_>, from: Vec2, object: ObjectId) -> Option<Approach> {
         let sweep = Sweep::before(facts, object);
-        let cost = |place| place_cost(facts, object, place) + sweep.cost(place);
+        let cost = |place| place_cost(facts, object, from, place) + sweep.cost(place);
         let mut places: Vec<(f32, Vec2)> = standing_places(facts, object)
             .filter(|place| self.is_walkable(*place) && self.is_before(facts, object, *place))
             .map(|place| (cost(place), place))
@@ -148,8 +148,8 @@ impl Sweep {
     }
 }
 
-/// How poor a place is to work on an object from, in metres of way.
-fn place_cost(facts: &Facts<'_>, object: ObjectId, place: Vec2) -> f32 {
+/// How poor a place is for a body at `from` to work on an object, in metres of way.
+fn place_cost(facts: &Facts<'_>, object: ObjectId, from: Vec2, place: Vec2) -> f32 {
     const GOOD_DISTANCE_M: f32 = 0.75;
     // What an object stands in decides the side to come from.
     let front =
@@ -157,9 +157,24 @@ fn place_cost(facts: &Facts<'_>, object: ObjectId, place: Vec2) -> f32 {
     let faced = facts.footprint(front);
     let out = (place - faced.closest(place)).normalize_or_zero();
     let has_front = !facts.has(front, Property::Pickupable);
-    let side = if has_front { 1.0 - out.dot(faced.axis) } else { 0.0 };
+    let side = if has_front { 1.0 - facing(facts, front, from, out.dot(faced.axis)) } else { 0.0 };
     let distance = facts.aim_point(object).truncate().distance(place);
     (distance - GOOD_DISTANCE_M).abs() * 1.5 + side * if needs_front(facts, front) { 3.0 } else { 0.4 }
+}
+
+/// How well a body that comes from `from` faces an object at a place that is `ahead` of its front: 1 before it, -1 behind it. A door
+/// between rooms is worked from the room where the body is, so that nobody leaves a room to shut its door; a body in neither of them
+/// shuts it from the nearer one.
+fn facing(facts: &Facts<'_>, object: ObjectId, from: Vec2, ahead: f32) -> f32 {
+    let Some(gap) = facts.floor.gaps.iter().find(|gap| gap.door_object == Some(object)) else { return ahead };
+    // Its front faces the second of the rooms that it joins.
+    let [behind, before] = gap.between;
+    match facts.floor.room_at(from) {
+        Some(room) if room == behind => -ahead,
+        Some(room) if room == before => ahead,
+        _ if facts.is(object, StateFlag::Opened) => ahead.abs(),
+        _ => ahead,
+    }
 }
 
 /// Whether it can only be worked from its front.

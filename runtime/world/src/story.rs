@@ -31,7 +31,9 @@ pub(crate) fn on_occasions(facts: &Facts<'_>, mission: &Mission) -> (Vec<Event>,
         let MessageTime::Occasion(occasion) = when else { return false };
         let holds = goals::occurs(facts, mission, occasion);
         now.push(holds);
-        holds && !before.next().unwrap_or(false)
+        // Taken also where it does not hold: each is compared with what it was itself.
+        let held = before.next().unwrap_or(false);
+        holds && !held
     };
     let (mut events, mut now) = (Vec::new(), Vec::new());
     for message in &mission.messages {
@@ -64,21 +66,30 @@ fn shown(facts: &Facts<'_>, movement: &CameraMovement) -> Option<Event> {
 }
 
 /// What comes into the world now: from behind a portal that is open, because its condition holds, or with what it is in.
-pub(crate) fn arrivals(facts: &Facts<'_>, mission: &Mission) -> Vec<Effect> {
-    let arrival = |object: ObjectId, away: &Away| {
+pub(crate) fn arrivals(facts: &Facts<'_>, mission: &Mission) -> Vec<ObjectId> {
+    let comes = |away: &Away| {
         // What it is in comes first, or it would come to stand in mid-air.
         let there = away.support.parent().is_none_or(|carrier| !facts.state.away.contains_key(&carrier));
-        let spot = match &away.until {
-            Until::Portal(name) => Spot::Floor(foot(facts, leading_to(facts, name)?)),
+        match &away.until {
+            Until::Portal(name) => leading_to(facts, name).is_some(),
             Until::Condition(index) => {
-                let condition = mission.objects.get(*index)?.condition.as_ref()?;
-                (there && goals::occurs(facts, mission, condition)).then(|| own_place(facts, away))?
+                let condition = mission.objects.get(*index).and_then(|request| request.condition.as_ref());
+                there && condition.is_some_and(|condition| goals::occurs(facts, mission, condition))
             }
-            Until::Carrier => there.then(|| own_place(facts, away))?,
-        };
-        Some(Effect::Return { object, spot })
+            Until::Carrier => there,
+        }
     };
-    facts.state.away.iter().filter_map(|(object, away)| arrival(*object, away)).collect()
+    facts.state.away.iter().filter(|(_, away)| comes(away)).map(|(object, _)| *object).collect()
+}
+
+/// How it comes: to where room is left now.
+pub(crate) fn arrival(facts: &Facts<'_>, object: ObjectId) -> Option<Effect> {
+    let away = facts.state.away.get(&object)?;
+    let spot = match &away.until {
+        Until::Portal(name) => Spot::Floor(foot(facts, leading_to(facts, name)?)),
+        Until::Condition(_) | Until::Carrier => own_place(facts, away),
+    };
+    Some(Effect::Return { object, spot })
 }
 
 /// The generator whose portal is open and of that name.

@@ -209,6 +209,21 @@ fn who_stands_in_the_swing_steps_out_of_it_to_go_through() {
 }
 
 #[test]
+fn a_door_is_worked_from_the_room_where_the_body_is() {
+    for (room, y_m) in [(RoomId::RECEPTION, 0.0..5.0), (RoomId::HALLWAY, 5.0..10.0)] {
+        for (state, verb) in [("Door_01_1 +Opened", Verb::Close), ("Door_01_1 -Opened", Verb::Open)] {
+            let mut play = Play::new(floor(TWO_ROOMS, "", &[state], room));
+            play.must(0, view(room, 1));
+            let door = play.id("Door_01_1");
+            play.must(0, Action::GoTo { target: GoToTarget::Object(door) });
+            play.must(0, Action::Interact { verb, object: door });
+            let at = play.body(0).position_m;
+            assert!(y_m.contains(&at.y), "{verb:?} from the {room:?}: at {at}");
+        }
+    }
+}
+
+#[test]
 fn an_open_door_leaf_is_walked_around() {
     let mut play = Play::new(floor(TWO_ROOMS, "", &["Door_01_1 +Opened"], RoomId::HALLWAY));
     // The leaf stands along x = 3.5 from y = 5 to y = 6.

@@ -359,6 +359,24 @@ fn messages_and_camera_movements_come_when_they_are_due() {
 }
 
 #[test]
+fn each_occasion_is_compared_with_what_it_was_itself() {
+    let message = |thing: &str| {
+        let held = Occasion::States(vec![flag(thing, StateFlag::PickedUp, true)], Relation::And);
+        Message { when: MessageTime::Occasion(held), text: thing.to_owned() }
+    };
+    let mut player = play(Mission {
+        messages: vec![message("Apple_1"), message("Bowl_01_1")],
+        ..mission(RoomId::BREAK_ROOM, &[TABLE, "Apple_1 in TableRound_02_1", "Bowl_01_1 in TableRound_02_1"])
+    });
+    player.must(&["goto Bowl_01_1", "pickup Bowl_01_1", "wait 10"]);
+    assert_eq!(messages(&player), ["Bowl_01_1"], "once, although the occasion before it never came");
+    player.must(&["place TableRound_02_1", "goto Apple_1", "pickup Apple_1", "wait 10"]);
+    assert_eq!(messages(&player), ["Bowl_01_1", "Apple_1"]);
+    player.must(&["place TableRound_02_1", "goto Bowl_01_1", "pickup Bowl_01_1", "wait 10"]);
+    assert_eq!(messages(&player), ["Bowl_01_1", "Apple_1", "Bowl_01_1"], "each time that it comes to hold");
+}
+
+#[test]
 fn a_camera_turns_to_the_only_machine_of_the_plan_under_a_small_number() {
     let movement = CameraMovement {
         when: MessageTime::Beginning,
@@ -595,6 +613,18 @@ fn what_waits_behind_a_portal_comes_as_it_opens() {
     player.must(&[&line("goto", MONITOR), &line("toggle", MONITOR), "wait 5"]);
     assert_eq!(inside(&player, "Apple_1").as_deref(), Some("FoodPlate_01_1"));
     player.must(&["goto FoodPlate_01_1", "pickup FoodPlate_01_1"]);
+}
+
+#[test]
+fn what_comes_through_a_portal_at_once_stands_side_by_side() {
+    let things = ["FoodPlate_01_1", "Bowl_01_1", "Apple_1"];
+    let wishes = things.map(|thing| format!("{thing} portal past"));
+    let mut player = play(portals(&wishes.each_ref().map(String::as_str), false));
+    player.must(&["wait 5", &line("goto", MONITOR), &line("toggle", MONITOR), "wait 5"]);
+    let at = things.map(|thing| player.world.object(player.id(thing)).unwrap().position_m);
+    for [one, other] in [[0, 1], [0, 2], [1, 2]] {
+        assert!(at[one].distance(at[other]) > 0.1, "{} and {}: {at:?}", things[one], things[other]);
+    }
 }
 
 #[test]

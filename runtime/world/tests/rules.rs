@@ -100,6 +100,20 @@ fn the_freezer_chills_once_it_is_closed() {
 }
 
 #[test]
+fn a_hand_holds_one_thing_whatever_the_rules_say() {
+    // As a world pack may have it: without the need `not held exists`.
+    let rule = "[[rule]]\nname = \"grab\"\naction = \"pick_up\"\nneeds = []\neffects = [\"take it\"]\n";
+    let files = [&[("grab.toml", rule)][..], Catalog::builtin_table()].concat();
+    let catalog = Arc::new(Catalog::builtin().with_table(&files).unwrap());
+    let objects = Vec::from(["TableRound_02_1 emptied", ON_TABLE, "Bowl_01_1 in TableRound_02_1"].map(request));
+    let mut player = Player::new(build(&catalog, Mission { objects, ..plain_mission(RoomId::BREAK_ROOM) }, 5));
+    player.must(&["goto Apple_1", "pickup Apple_1", "goto Bowl_01_1", "pickup Bowl_01_1"]);
+    let held = player.world.body(BodyId(0)).unwrap().held;
+    assert_eq!(held, Some(player.id("Bowl_01_1")));
+    assert!(!flags(&player, "Apple_1").has(StateFlag::PickedUp), "it was let go");
+}
+
+#[test]
 fn fluids() {
     const SINK: &str = "KitchenCounterSink_01_10000";
     let wishes = ["TableRound_02_1 emptied", "CoffeeMug_Boss_1 in TableRound_02_1", "Bowl_01_1 in TableRound_02_1"];
@@ -124,6 +138,21 @@ fn a_plate_is_cleaned_under_running_water() {
     assert_eq!(player.run(&format!("clean {sink}")).status, Status::ActionExecutionError);
     player.must(&[&format!("toggle {sink}"), &format!("clean {sink}")]);
     assert!(!flags(&player, "FoodPlate_01_1").has(StateFlag::Dirty));
+}
+
+#[test]
+fn no_rule_puts_a_thing_into_itself() {
+    // As a world pack may have it: without the need `not it is in held`.
+    let rule = "[[rule]]\nname = \"stack\"\naction = \"place\"\nneeds = []\neffects = [\"put held it\"]\n";
+    let files = [&[("stack.toml", rule)][..], Catalog::builtin_table()].concat();
+    let catalog = Arc::new(Catalog::builtin().with_table(&files).unwrap());
+    let wishes = ["TableRound_02_1 emptied", "FoodPlate_01_1 in TableRound_02_1", "Apple_1 in FoodPlate_01_1"];
+    let objects = wishes.iter().map(|line| request(line)).collect();
+    let mut player = Player::new(build(&catalog, Mission { objects, ..plain_mission(RoomId::BREAK_ROOM) }, 5));
+    player.must(&["goto FoodPlate_01_1", "pickup FoodPlate_01_1"]);
+    assert_eq!(player.run("place FoodPlate_01_1").status, Status::InvalidCommand);
+    assert_eq!(player.run("place Apple_1").status, Status::InvalidCommand);
+    player.must(&["place TableRound_02_1"]);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! The table evaluated over a state: any that can answer for its things.
 
+use std::sync::LazyLock;
+
 use super::{
     ActionKind, ActionTable, Device, Need, Rule,
     change::{Change, Effect},
@@ -185,6 +187,18 @@ impl Scope {
         needs.iter().find(|need| !need.any.iter().any(|condition| self.holds(view, condition)))
     }
 
+    /// Whether changes that follow would put a thing into itself, or into what is in or on it.
+    fn puts_into_itself(&self, view: &impl View, effects: &[Effect]) -> bool {
+        effects.iter().any(|effect| {
+            let into_itself = |change: &Change| {
+                let Change::Put(thing, place) = change else { return false };
+                let (Some(thing), Some(place)) = (self.get(view, *thing), self.get(view, *place)) else { return false };
+                std::iter::successors(Some(place), |id| view.parent(*id)).any(|id| id == thing)
+            };
+            effect.changes.iter().any(into_itself) && self.all_hold(view, &effect.when)
+        })
+    }
+
     /// The changes that follow.
     pub fn changes<'t>(&self, view: &impl View, effects: &'t [Effect]) -> Vec<&'t Change> {
         let follow = effects.iter().filter(|effect| self.all_hold(view, &effect.when));
@@ -276,6 +290,13 @@ impl Judgement<'_> {
     }
 }
 
+/// What every rule needs, whether it says so or not: there is no place for a thing in itself.
+static NOT_INTO_ITSELF: LazyLock<Need> = LazyLock::new(|| Need {
+    any: vec![Condition { negated: true, term: Term::It, test: Test::InHeld }],
+    status: Status::InvalidCommand,
+    words: "nothing can be put into itself".to_owned(),
+});
+
 impl ActionTable {
     /// Judges an action on a thing; none, if there is no rule for it.
     pub fn judge(&self, view: &impl View, action: ActionKind, it: ObjectId) -> Option<Judgement<'_>> {
@@ -284,6 +305,7 @@ impl ActionTable {
         let device = (action == ActionKind::Toggle).then(|| self.device(&view.class(it).id));
         let lack = scope.lacks(view, &rule.needs);
         let lack = lack.or_else(|| device.and_then(|device| scope.lacks(view, &device.needs)));
+        let lack = lack.or_else(|| scope.puts_into_itself(view, &rule.effects).then(|| &*NOT_INTO_ITSELF));
         Some(Judgement { rule, device, lack })
     }
 }

@@ -59,8 +59,12 @@ impl World {
             self.changes(events).apply(effects);
         }
         if !self.state.away.is_empty() {
-            let effects = story::arrivals(&self.facts(), &self.mission);
-            self.changes(events).apply(effects);
+            let coming = story::arrivals(&self.facts(), &self.mission);
+            for object in coming {
+                // What came before it has its place by now.
+                let effect = story::arrival(&self.facts(), object);
+                self.changes(events).apply(effect.into_iter().collect());
+            }
         }
         let (due, now) = story::on_occasions(&self.facts(), &self.mission);
         events.extend(due);
