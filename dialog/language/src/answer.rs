@@ -65,6 +65,7 @@ impl Answerer<'_> {
             (QuestionKind::Abilities | QuestionKind::HowTo, _) => {
                 Understanding::answer(examples::abilities(self.catalog, self.scene))
             }
+            (QuestionKind::Carried, about) => self.carried(about, question),
             (QuestionKind::Doing, _) => self.doing(),
             (QuestionKind::Finished, Some(phrase)) if !phrase.namings.is_empty() => self.done(Some(phrase)),
             (QuestionKind::Finished, _) => self.finished(),
@@ -75,8 +76,17 @@ impl Answerer<'_> {
             (QuestionKind::DoneSoFar, _) => self.done_so_far(),
             (QuestionKind::Purpose, Some(phrase)) => self.purpose(phrase),
             (QuestionKind::Danger, about) => self.danger(about, question),
-            (QuestionKind::People, _) => self.people(),
+            // `who is in the photo`
+            (QuestionKind::People, Some(phrase))
+                if !phrase.namings.is_empty()
+                    && matches!(question.rest.as_slice(), [first, the, ..] if first == "in" && the == "the")
+                    && self.room_in(&question.rest).is_none() =>
+            {
+                self.unknown_of(phrase)
+            }
+            (QuestionKind::People, _) => self.people(self.room_in(&question.rest)),
             (QuestionKind::Rooms, _) => self.rooms(),
+            (QuestionKind::RoomCount, _) => self.room_count(),
             (QuestionKind::Trouble, Some(phrase)) => self.with_object(phrase, |id| self.trouble(id)),
             (QuestionKind::Owner, Some(phrase)) => self.with_object(phrase, |id| self.owner(id)),
             (QuestionKind::Holder, Some(phrase)) => self.with_object(phrase, |id| self.holder(id)),
@@ -95,11 +105,11 @@ impl Answerer<'_> {
             (QuestionKind::Said, _) => self.said(),
             (QuestionKind::Recording, _) => Understanding::whether(true, RECORDED, Vec::new()),
             (QuestionKind::Time, _) => Understanding::answer("I have no clock, so I cannot tell."),
-            (QuestionKind::Seeing, _) => self.seeing(),
             // Before what is named: a floor lamp is called by that word, too.
-            (QuestionKind::Contents, _) if self.is_about_floor(question) => {
+            (QuestionKind::Contents | QuestionKind::Seeing, _) if self.is_about_floor(question) => {
                 self.on_floor(self.room_in(&question.rest)).with_yes_or_no(question.is_whether)
             }
+            (QuestionKind::Seeing, _) => self.seeing(),
             (QuestionKind::Contents, about)
                 if about.is_none_or(|phrase| phrase.namings.is_empty() && phrase.pronoun.is_none())
                     && let Some(room) = self.room_in(&question.rest) =>
@@ -156,6 +166,7 @@ impl Answerer<'_> {
             {
                 self.any_in_state(phrase, state, words)
             }
+            (QuestionKind::State, _) if self.lexicon.yes_no.says_meal_is_done(&question.rest) => self.meal(),
             (QuestionKind::State, Some(phrase)) => self.claim(phrase, question),
             (QuestionKind::Where, about)
                 if about.as_ref().is_none_or(|phrase| phrase.namings.is_empty() && phrase.fluid.is_none())

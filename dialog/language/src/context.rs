@@ -15,7 +15,7 @@ use crate::{
     },
     ground::focus::Focus,
     known::Known,
-    read::{clause::Clause, question::Question, slot::Slot},
+    read::{clause::Clause, hint::Hint, question::Question, slot::Slot},
     say::reply,
     understanding::{Step, Understanding},
     words::{prose, question_kind::QuestionKind},
@@ -50,6 +50,9 @@ pub struct Context {
     /// Why what was asked for last cannot be done.
     #[serde(default)]
     pub(crate) refused: Option<String>,
+    /// What of the last request is not done by its plan, and why.
+    #[serde(default)]
+    pub(crate) left_out: Option<String>,
     /// The request that the last plan is for.
     pub(crate) request: Vec<Clause>,
     /// What was asked last, if nothing was asked for since.
@@ -67,18 +70,27 @@ pub struct Context {
     /// left out.
     #[serde(default)]
     pub(crate) later: Vec<String>,
+    /// What was offered besides the plan under way and agreed to: it is done once that has ended.
+    #[serde(default)]
+    pub(crate) agreed: Option<Guess>,
     /// What is done after waits.
     #[serde(default)]
     pub(crate) awaited: Vec<Awaited>,
     /// Whether it goes where the person goes.
     #[serde(default)]
     pub(crate) follows: bool,
+    /// Whether it went where the person goes when they said this: what was said decides whether it still does.
+    #[serde(default)]
+    pub(crate) followed: bool,
     /// Where the person and the robot stood when it last went after them, m.
     #[serde(default)]
     pub(crate) gone_after: Option<[[f32; 2]; 2]>,
     /// What it waited for last, in words.
     #[serde(default)]
     pub(crate) waited: Option<String>,
+    /// Where somebody thinks that what is asked for is, while that is understood.
+    #[serde(default)]
+    pub(crate) hint: Option<Hint>,
     /// What was answered before what is to be done is told.
     #[serde(default)]
     pub(crate) answered: String,
@@ -125,6 +137,8 @@ pub(crate) enum Pending {
     Offer { plans: Vec<Vec<Step>> },
     /// The same of what was only guessed at.
     Guess { guesses: Vec<Guess> },
+    /// Whether to do this, too, besides the plan under way; whether that was asked once more when it had ended.
+    Also { guess: Box<Guess>, question: String, is_asked: bool },
 }
 
 /// A plan that the robot asks about, with what is to follow it.
@@ -140,6 +154,16 @@ pub(crate) struct Guess {
 }
 
 impl Guess {
+    /// What is to follow it, which it then has no longer.
+    pub(crate) fn take_later(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.later)
+    }
+
+    /// The same in other words.
+    pub(crate) fn called(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+
     fn begins_with(&self, step: &Step) -> bool {
         self.steps.first().is_some_and(|first| first.action == step.action)
     }
@@ -201,6 +225,9 @@ impl Context {
         }
         self.running.clear();
         self.later.clear();
+        self.agreed = None;
+        // What goes on from what failed is offered no longer: a yes now means the remedy.
+        self.pending.take_if(|pending| matches!(pending, Pending::Also { .. }));
         self.follows = false;
         if let Some(search) = self.search.as_mut().filter(|search| search.is_under_way()) {
             search.note_failure(step, status);
@@ -218,9 +245,10 @@ impl Context {
         self.last_plan = steps.to_vec();
         (self.left_undone, self.halted) = (0, None);
         self.planned_for.clone_from(&self.reason);
-        self.refused = None;
+        (self.refused, self.left_out) = (None, None);
         self.request.clear();
         self.later.clear();
+        self.agreed = None;
         self.pending = None;
         self.failed = None;
         self.search = None;
@@ -242,6 +270,11 @@ impl Context {
         understanding: Understanding,
     ) -> Understanding {
         let own = std::mem::take(&mut self.later);
+        // What is under way goes on, whatever is said of what is offered besides.
+        if matches!(open, Some(Pending::Also { .. })) {
+            self.later = later.into_iter().chain(own).collect();
+            return understanding;
+        }
         let is_guess = matches!(open, Some(Pending::Guess { .. }));
         let all = if is_guess { own } else { later.into_iter().chain(own).collect() };
         self.keep(all, understanding)
@@ -250,13 +283,18 @@ impl Context {
     /// What this conversation is about to do with these steps, to be asked about first.
     pub(crate) fn guess(&self, steps: &[Step]) -> Guess {
         let Self { search, later, request, reason, .. } = self.clone();
-        // A search says no more than where it begins: what it is for does.
-        let sought = search.as_ref().map(|_| reply::request_in_words(&request)).filter(|request| !request.is_empty());
-        let is_done_first = search.as_ref().is_none_or(|search| !search.is_under_way());
-        let first = (is_done_first || sought.is_none()).then(|| reply::plan_in_words(steps));
-        let then = sought.iter().chain(&later).map(|text| prose::doing(text));
-        let name = prose::list(&first.into_iter().chain(then).collect::<Vec<_>>(), "and then");
+        let name = reply::told_in_words(&self.told(steps));
         Guess { name, steps: steps.to_vec(), search, later, request, reason }
+    }
+
+    /// The same in words, part by part.
+    pub(crate) fn told(&self, steps: &[Step]) -> Vec<reply::Told> {
+        // A search says no more than where it begins: what it is for does.
+        let sought: Vec<String> = self.search.iter().flat_map(|_| reply::doings(&self.request)).collect();
+        let is_done_first = self.search.as_ref().is_none_or(|search| !search.is_under_way());
+        let first = if is_done_first || sought.is_empty() { steps } else { &[] };
+        let later = self.later.iter().flat_map(|text| prose::doings(text));
+        first.iter().map(reply::Told::of_step).chain(sought.into_iter().chain(later).map(reply::Told::then)).collect()
     }
 
     /// Takes note that a guess was right, and is about to be carried out.
@@ -265,6 +303,15 @@ impl Context {
         (self.search, self.later) = (guess.search, guess.later);
         (self.request, self.planned_for) = (guess.request, guess.reason.clone());
         self.reason = guess.reason;
+    }
+
+    /// Takes note of the first part of a search, before which nothing of its request was done: what was done before is no part of it, and
+    /// not what is undone next.
+    pub(crate) fn begin_search(&mut self, steps: &[Step]) {
+        self.last_plan = steps.to_vec();
+        self.left_undone = 0;
+        self.planned_for.clone_from(&self.reason);
+        self.begin_leg(steps);
     }
 
     /// Takes note of a part of a search that is about to be carried out.
@@ -298,6 +345,11 @@ impl Context {
         self.pending = Some(Pending::Search { clauses: self.request.clone() });
     }
 
+    /// Whether a question of the robot's must be answered before anything else is done.
+    pub(crate) const fn must_be_answered(&self) -> bool {
+        !matches!(self.pending, None | Some(Pending::Also { .. }))
+    }
+
     /// Whether a plan or a search is under way.
     pub(crate) const fn is_busy(&self) -> bool {
         !self.running.is_empty() || self.search.is_some()
@@ -312,7 +364,8 @@ impl Context {
     /// Whether there is more to do after the plan under way: [`crate::Language::carry_on`] knows what.
     #[must_use]
     pub const fn awaits_more(&self) -> bool {
-        self.search.is_some() || !self.later.is_empty()
+        let is_offered = matches!(self.pending, Some(Pending::Also { is_asked: false, .. }));
+        self.search.is_some() || !self.later.is_empty() || self.agreed.is_some() || is_offered
     }
 
     /// Whether the robot is looking for something or follows somebody: how the parts of that end is not worth telling.
@@ -338,6 +391,9 @@ mod tests {
         looking.request = vec![Clause::find(Phrase { text: "the mug".to_owned(), ..Phrase::default() })];
         let guess = looking.guess(&steps);
         assert_eq!(guess.name, "looking around, finding the mug and then stopping", "all that is to follow is named");
+        let plate = Clause::find(Phrase { text: "the plate".to_owned(), ..Phrase::default() });
+        let both = Context { request: [looking.request.clone(), vec![plate]].concat(), ..looking };
+        assert_eq!(both.guess(&steps).name, "looking around, finding the mug, finding the plate and then stopping");
         let mut asked = Context::default();
         asked.begin_guessed(guess);
         assert_eq!(asked.planned_for, "you asked me to mend the mug");

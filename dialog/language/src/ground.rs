@@ -159,6 +159,7 @@ impl<'a> Ground<'a> {
     /// Those of `candidates` that an answer such as `the red one` or `on the desk` means.
     pub(crate) fn narrow(&self, phrase: &Phrase, candidates: &[ObjectId]) -> Vec<ObjectId> {
         let base: Vec<&KnownObject> = candidates.iter().filter_map(|id| self.scene.object(*id)).collect();
+        let phrase = &Self::compared(phrase, &base);
         if let Some(ordinal) = phrase.ordinal
             && phrase.side.is_none()
         {
@@ -168,7 +169,7 @@ impl<'a> Ground<'a> {
             .into_iter()
             .filter(|object| self.is_named(phrase, object) && self.is_as_said(phrase, object))
             .collect();
-        left.retain(|object| phrase.states.iter().all(|state| has_state(object, *state)));
+        left.retain(|object| phrase.states.iter().all(|state| self.is_in_state(object, *state)));
         self.keep_nearest(phrase, &mut left);
         match self.by_position(phrase, &left) {
             Some(one) => vec![one],

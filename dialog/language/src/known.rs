@@ -1,5 +1,6 @@
 //! What the robot knows of its world: the only facts language is grounded on.
 
+pub(crate) mod afforded;
 pub(crate) mod contents;
 pub(crate) mod describe;
 pub(crate) mod floor;
@@ -20,6 +21,9 @@ use cohabit_cdf::{
 use serde::{Deserialize, Serialize};
 
 use crate::known::floor::Floor;
+
+/// What stands on nothing and lower than this lies on the floor, m.
+pub(crate) const ON_FLOOR_M: f32 = 0.3;
 
 /// The robot, the objects it knows of, and the goals.
 #[derive(Clone, Debug, PartialEq)]
@@ -160,6 +164,11 @@ impl Known {
             left -= 1;
             (left >= 0).then_some(object)
         })
+    }
+
+    /// Whether a thing lies or stands on the floor: on nothing else, and in nobody's hand.
+    pub(crate) fn is_on_floor(&self, object: &KnownObject) -> bool {
+        object.parent.is_none() && self.robot.held != Some(object.id) && object.position_m[2] <= ON_FLOOR_M
     }
 
     /// The horizontal distance from the robot, m.

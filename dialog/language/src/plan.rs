@@ -1,8 +1,10 @@
 //! From clauses to steps: each clause is grounded on the scene as the steps before it are expected to leave it.
 
+mod breakage;
 mod carry;
 mod clauses;
 mod device;
+mod fixed;
 mod motion;
 mod pour;
 mod process;
@@ -34,6 +36,8 @@ use crate::{
 const AT_HAND_M: f32 = 2.0;
 /// The share of a room that was looked at by who has looked around in it.
 const LOOKED_AT: f32 = 0.6;
+/// What is said where something is asked of the floor, which is no thing.
+const NOTHING_WITH_FLOOR: &str = "I can do nothing with the floor itself.";
 
 /// Why there is no plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +69,10 @@ pub(crate) struct Planner<'a> {
     pub(crate) steps: Vec<Step>,
     /// What the robot should say beyond the steps: what it does unasked, what is done already.
     pub(crate) notes: Vec<String>,
+    /// What this request would have it carry that cannot be carried.
+    pub(crate) fixed: Vec<ObjectId>,
+    /// What it does not do of this request, and why.
+    pub(crate) left_out: Option<String>,
     /// Whether it may put down what it holds to take something else.
     pub(crate) may_put_down: bool,
     /// Whether it has looked around for this request.
@@ -97,6 +105,8 @@ impl<'a> Planner<'a> {
             focus,
             steps: Vec::new(),
             notes: Vec::new(),
+            fixed: Vec::new(),
+            left_out: None,
             may_put_down: false,
             has_looked: false,
             clause: 0,
@@ -127,6 +137,9 @@ impl<'a> Planner<'a> {
 
     /// Grounds a phrase, and says where it stands if that fails.
     pub(crate) fn find_one(&self, phrase: &Phrase, want: &Want<'_>, role: Option<Role>) -> Result<ObjectId, Fault> {
+        if phrase.is_floor {
+            return Err(Fault::Cannot(NOTHING_WITH_FLOOR.to_owned()));
+        }
         let is_held = want.held_first && self.scene.robot.held.is_some();
         let is_it = phrase.pronoun == Some(Pronoun::Thing) && !phrase.is_described() && phrase.chosen.is_none();
         let phrase = self.focus.unseen.as_ref().filter(|_| is_it && !is_held).unwrap_or(phrase);

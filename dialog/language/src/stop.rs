@@ -53,6 +53,31 @@ pub fn find_stop(text: &str) -> Option<Stop> {
     stop
 }
 
+/// What somebody drops before they ask for something else, or after.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub(crate) struct Dropped {
+    /// The words for the thing that is not wanted; empty, where all of it is dropped.
+    pub(crate) what: String,
+    /// What else they say.
+    pub(crate) rest: String,
+}
+
+/// What is dropped in a text, if anything is: `never mind the mug, bring me the plate`.
+#[must_use]
+pub(crate) fn find_dropped(text: &str) -> Option<Dropped> {
+    let words = words::words();
+    let tokens = tokens::tokens(words, text);
+    let clauses = tokens::clauses(&tokens);
+    let spelt: Vec<String> = tokens.iter().map(|token| token.word.clone()).collect();
+    let said = Said { words, tokens: &tokens, spelt: &spelt, clauses: &clauses };
+    let mut all =
+        clauses.iter().enumerate().flat_map(|(number, clause)| clause.words.clone().map(move |at| (number, at)));
+    let (number, what) = all.find_map(|(number, at)| Some((number, said.dropped_at(number, at)?)))?;
+    let before = text[..tokens.get(clauses[number].words.start)?.from].trim();
+    let rest = format!("{before} {}", said.rest(text, what.end));
+    Some(Dropped { what: spelt[what].join(" "), rest: rest.trim().to_owned() })
+}
+
 /// Whether a text has the word itself in it, told to the robot or not: "OK, I stop."
 #[must_use]
 pub fn mentions_stop(text: &str) -> bool {

@@ -130,9 +130,31 @@ fn picking_up() {
         lift the banana -> take Banana_01_1
         pick up the hammer cartridge -> take Printer_Cartridge_Hammer_1
         pick up the mug -> ? Which one do you mean: the red mug on the round table or the yellow mug on the round table?
-        pick up the fridge -> ! I cannot pick up the fridge.
+        pick up the fridge -> ! I cannot pick up the fridge: it is not made to be carried. I can open it and put things in it.
         pick up the knife and the bowl -> ? I can only carry one thing at a time. Shall I begin with the knife?",
     );
+}
+
+#[test]
+fn what_cannot_be_carried_is_said_of_all_of_it_and_the_rest_is_done() {
+    check(
+        &[],
+        "pick up the fridge and the microwave -> ! I cannot pick up the fridge or the microwave: they are not made to be carried.
+        pick up the fridge and the banana -> take Banana_01_1
+        put the fridge and the banana on the counter -> take Banana_01_1, put KitchenCounterTop_02_1
+        put the fridge on the counter and put the banana on the counter -> take Banana_01_1, put KitchenCounterTop_02_1
+        pick up the fridge and put it on the counter -> ! I cannot pick up the fridge: it is not made to be carried…
+        pick up the fridge, put it on the counter and open the microwave -> open Microwave_01_1
+        pick up the fridge, open the cabinet and put it in -> ! I cannot pick up the fridge…",
+    );
+    let catalog = catalog();
+    let (language, known) = (Language::new(catalog.clone()), scene(&catalog, &[]));
+    let mut context = Context::default();
+    let understood = language.understand("put the fridge and the banana on the counter", &known, &mut context);
+    let reply = understood.reply();
+    assert!(reply.starts_with("I cannot pick up the fridge: it is not made to be carried. I can open it"), "{reply}");
+    let why = language.understand("why did you not pick up the fridge?", &known, &mut context);
+    assert!(why.reply().starts_with("I cannot pick up the fridge: it is not made"), "{}", why.reply());
 }
 
 #[test]
@@ -289,6 +311,20 @@ fn processes() {
 }
 
 #[test]
+fn rooms_are_looked_over_where_they_are() {
+    check(
+        &[],
+        "look in the main office -> go MainOffice, look around
+        look around in the main office -> go MainOffice, look around
+        have a look in the main office -> go MainOffice, look around
+        go and have a look in the main office -> go MainOffice, look around
+        look around the main office -> go MainOffice, look around
+        go to the main office and have a look -> go MainOffice, look around
+        look in the kitchen -> look around",
+    );
+}
+
+#[test]
 fn several_in_a_sentence() {
     check(
         &[],
@@ -298,6 +334,11 @@ fn several_in_a_sentence() {
         pick up the bowl then put it in the time machine, close it and turn it on -> take Bowl_01_1, open YesterdayMachine_01_1, put YesterdayMachine_01_1, close YesterdayMachine_01_1, toggle YesterdayMachine_01_1
         go to the main office and grab the trophy and bring it to the robotics lab -> go MainOffice, take Trophy01_1, go Lab1
         first go to the fridge, then open it -> go FridgeLower_02_1, open FridgeLower_02_1
+        take the banana, but first open the fridge -> open FridgeLower_02_1, take Banana_01_1
+        put the banana on the plate. And first turn on the sink. -> toggle KitchenCounterSink_01_1, take Banana_01_1, put FoodPlate_01_1
+        go to the microwave, but open the fridge first -> open FridgeLower_02_1, go Microwave_01_1
+        take the banana. before that, open the fridge and turn on the sink -> open FridgeLower_02_1, toggle KitchenCounterSink_01_1, take Banana_01_1
+        put the banana on the plate, but look at it first -> examine Banana_01_1, take Banana_01_1, put FoodPlate_01_1
         go to the desk with the hammer on it and pick it up -> go AP_Prop_Desk_Blue_1, take Hammer_1
         go to the sink and turn it on -> go KitchenCounterSink_01_1, toggle KitchenCounterSink_01_1
         pick up the banana and place it on the counter -> take Banana_01_1, put KitchenCounterTop_02_1
@@ -306,6 +347,8 @@ fn several_in_a_sentence() {
         put the banana in the microwave and shut the door -> take Banana_01_1, open Microwave_01_1, put Microwave_01_1, close Microwave_01_1
         pick up the banana and the knife and put them on the plate -> take Banana_01_1, put FoodPlate_01_1, take Knife_01_1, put FoodPlate_01_1
         pick up teh knife frm the counter -> take Knife_01_1
+        open the fridge and open also the microwave -> open FridgeLower_02_1, open Microwave_01_1
+        take also the banana -> take Banana_01_1
         pick up the hammer and break the record -> take Hammer_1, break Record_01_1
         put the bowl on the counter and the banana in the fridge -> take Bowl_01_1, put KitchenCounterTop_02_1, take Banana_01_1, open FridgeLower_02_1, put FridgeLower_02_1",
     );

@@ -55,6 +55,25 @@ fn an_answer_may_be_no_or_another_request_or_nonsense() {
 }
 
 #[test]
+fn the_one_on_the_floor_is_the_one_that_is_on_nothing() {
+    let fallen = || {
+        let mut talk = Talk::new(&[]);
+        let mug = talk.scene.objects.iter_mut().find(|one| one.instance == "CoffeeMug_Yellow_1").unwrap();
+        (mug.parent, mug.position_m[2]) = (None, 0.0);
+        talk
+    };
+    assert_eq!(fallen().say("pick up the mug on the floor"), "take CoffeeMug_Yellow_1");
+    for answer in ["on the floor", "the one on the floor"] {
+        let mut talk = fallen();
+        assert!(talk.say("pick up the mug").starts_with("? Which one"));
+        assert_eq!(talk.say(answer), "take CoffeeMug_Yellow_1", "{answer}");
+    }
+    let mut talk = Talk::new(&["held Bowl_01_1"]);
+    assert!(talk.say("put it on the floor").starts_with("? I cannot put things on the floor"));
+    assert_eq!(talk.say("yes"), "put TableRound_02_1");
+}
+
+#[test]
 fn another_may_do() {
     check(&[], "> pick up the blue apple\n? I do not know of a blue apple. Do you mean…\n> the red one\ntake Apple_1");
     check(
@@ -115,6 +134,26 @@ fn fail(talk: &mut Talk, utterance: &str, status: Status, detail: &str, answer: 
     talk.context.note_outcome(&steps[0], status);
     let report = talk.language.report(&steps[0], status, detail, &talk.scene);
     (report, talk.say(answer))
+}
+
+#[test]
+fn who_meant_another_one_of_the_kind_says_which() {
+    let shown = "> show me the red mug\nshow CoffeeMug_Boss_1";
+    for said in [
+        "the other one",
+        "no, the other one",
+        "no, not that one",
+        "that is the wrong one",
+        "not that one, the yellow one",
+        "no, the one on the right",
+        "the yellow one",
+    ] {
+        check(&[], &format!("{shown}\n> {said}\nshow CoffeeMug_Yellow_1"));
+    }
+    // All of the request is meant again.
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("put the red mug on the counter");
+    assert_eq!(talk.say("no, the other one"), "take CoffeeMug_Yellow_1, put KitchenCounterTop_02_1");
 }
 
 #[test]
@@ -275,6 +314,18 @@ fn why_it_stopped_is_a_question() {
 }
 
 #[test]
+fn a_door_that_is_shut_behind_one_is_not_the_one_at_ones_back() {
+    let mut talk = Talk::new(&["Door_01_1 open"]);
+    let door = talk.scene.objects.iter().find(|one| one.instance == "Door_01_1").unwrap();
+    let mut other = door.clone();
+    other.id = ObjectId(u32::try_from(talk.scene.objects.len()).unwrap());
+    (other.instance, other.position_m) = ("Door_01_2".to_owned(), [-6.0, 2.0, 0.0]);
+    other.flags.set(cohabit_cdf::StateFlag::Opened, false);
+    talk.scene.objects.push(other);
+    assert_eq!(talk.say("close the door behind you"), "close Door_01_1");
+}
+
+#[test]
 fn who_agrees_in_other_words_has_said_yes() {
     check(
         &[],
@@ -361,6 +412,22 @@ fn what_flows_is_poured_and_nothing_else() {
 }
 
 #[test]
+fn what_is_there_to_be_looked_at_is_not_carried() {
+    let scene = ["plan OfficeLayout1 BreakRoom", "add SM_Prop_Papers_01 on TableRound_02"];
+    let why = "I cannot pick up the papers: they are there to be looked at, and not made to be carried.";
+    check(&scene, &format!("> pick up the papers\n! {why}\n> why not?\n= {why}"));
+}
+
+#[test]
+fn who_asks_what_is_wrong_with_what_was_refused_is_told_why() {
+    let why = "= I cannot pour the radio.";
+    for asked in ["what is the problem with the radio?", "what do you mean you can't?", "for what reason?"] {
+        let scene = ["plan OfficeLayout1 BreakRoom"];
+        check(&scene, &format!("> pour the radio into the sink\n! I cannot pour the radio.\n> {asked}\n{why}"));
+    }
+}
+
+#[test]
 fn what_is_in_the_hand_may_be_called_by_the_last_word_of_its_name() {
     let scene = ["plan OfficeLayout1 BreakRoom"];
     let mut talk = Talk::new(&scene);
@@ -380,6 +447,31 @@ fn nothing_is_repaired_twice() {
     let scene = ["plan OfficeLayout1 BreakRoom", "add Record_01 on TableRound_02", "Record_01 broken"];
     let once = Talk::new(&scene).say("repair the record");
     assert_eq!(Talk::new(&scene).say("repair the record and repair the record"), once);
+}
+
+#[test]
+fn what_is_full_of_things_or_has_none_is_told_by_that() {
+    check(&["Hammer_1 in TableRound_02_1"], "> go to the empty desk\ngo AP_Prop_Desk_Blue_1");
+    for (answer, mug) in [("the full one", "Boss"), ("the empty one", "Yellow")] {
+        let mut talk = Talk::new(&["CoffeeMug_Boss_1 coffee"]);
+        assert!(talk.say("pick up the mug").starts_with("? Which one"));
+        assert_eq!(talk.say(answer), format!("take CoffeeMug_{mug}_1"), "{answer}");
+    }
+}
+
+#[test]
+fn the_upper_one_is_the_one_that_is_higher() {
+    let stacked = || {
+        let mut talk = Talk::new(&[]);
+        let mug = talk.scene.objects.iter_mut().find(|one| one.instance == "CoffeeMug_Yellow_1").unwrap();
+        mug.position_m[2] += 0.5;
+        talk
+    };
+    for (answer, mug) in [("the upper one", "Yellow"), ("the lower one", "Boss")] {
+        let mut talk = stacked();
+        assert!(talk.say("pick up the mug").starts_with("? Which one"));
+        assert_eq!(talk.say(answer), format!("take CoffeeMug_{mug}_1"), "{answer}");
+    }
 }
 
 #[test]

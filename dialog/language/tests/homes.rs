@@ -280,6 +280,19 @@ fn laundry_is_washed_in_the_machine_that_is_made_for_it() {
     answers(&mut talk, &[("what is dirty?", "= None that I know of."), ("what is wet?", "= The shirt in my hand.")]);
 }
 
+#[test]
+fn whether_it_is_ready_is_told_by_the_machine_that_makes_it() {
+    let mut talk = Talk::new(&["plan House_Family UtilityRoom", "add Shirt on Laundry_Basket", "Shirt dirty"]);
+    talk.say_and_do("wash the shirt");
+    answers(&mut talk, &[("is the washing machine finished?", "= Yes, the washing machine is done.")]);
+    let mut talk = Talk::new(&["plan House_Family Kitchen", "Kettle water"]);
+    let asked =
+        [("is the water ready?", "= No, the water in the kettle is not hot."), ("is dinner ready?", "= No, I have")];
+    answers(&mut talk, &asked);
+    talk.say_and_do("boil the water in the kettle");
+    answers(&mut talk, &[("is the water ready?", "= Yes, the water in the kettle is hot.")]);
+}
+
 const CHILDREN: &[&str] = &["plan Flat_Two_Bed ChildrensRoom", "add Teddy_Bear on Bunk_Bed", "add Toy_Car on Bunk_Bed"];
 
 #[test]
@@ -318,6 +331,24 @@ fn a_table_is_cleared_of_all_that_stands_on_it() {
     assert!(talk.say_and_do("the coffee table").starts_with("take Remote_Control"));
 }
 
+#[test]
+fn of_two_tables_the_one_that_is_more_so_is_told_by_its_size_and_weight() {
+    let told = |answer: &str| {
+        let mut talk = Talk::new(KITCHEN);
+        let asked = talk.say("clear the table");
+        assert!(asked.starts_with("? Which one do you mean: the dining table"), "{asked}");
+        talk.say(answer)
+    };
+    for answer in ["the shorter one", "the smaller one", "the lighter one", "the small one please"] {
+        let steps = told(answer);
+        assert!(steps.starts_with("take Remote_Control"), "{answer}: {steps}");
+    }
+    for answer in ["the longer one", "the taller one", "the heavier one", "the big one"] {
+        let steps = told(answer);
+        assert!(steps.starts_with("take ") && !steps.contains("Remote_Control"), "{answer}: {steps}");
+    }
+}
+
 /// Lets a thing lie on the floor where it is.
 fn drop_on_floor(talk: &mut Talk, instance: &str) {
     let object = talk.scene.objects.iter_mut().rfind(|one| one.instance == instance).unwrap();
@@ -354,11 +385,49 @@ fn the_floor_is_no_floor_lamp() {
 }
 
 #[test]
+fn what_lies_on_the_floor_is_described_by_that() {
+    for said in
+        ["pick up the tomato on the floor", "take the tomato that lies on the floor", "get the tomato off the floor"]
+    {
+        let mut talk = Talk::new(KITCHEN);
+        drop_on_floor(&mut talk, "Tomato");
+        assert_eq!(talk.say(said), "take Tomato", "{said}");
+    }
+    let mut talk = Talk::new(KITCHEN);
+    drop_on_floor(&mut talk, "Tomato");
+    answers(&mut talk, &[("is there anything on the floor in here?", "= Yes, on the")]);
+    let mut talk = Talk::new(KITCHEN);
+    answers(&mut talk, &[("put the tomato on the floor", "? I cannot put things on the floor, only on or into")]);
+    let steps = talk.say("yes please");
+    assert!(steps.starts_with("take Tomato, put ") && !steps.contains("Lamp"), "{steps}");
+}
+
+#[test]
+fn what_was_taken_from_the_floor_is_remembered_as_that() {
+    let mut talk = Talk::new(KITCHEN);
+    talk.say_and_do("put the tomato on the dining table");
+    drop_on_floor(&mut talk, "Tomato");
+    assert_eq!(talk.say_and_do("pick up the tomato"), "take Tomato");
+    let asked = [
+        ("where did you get it?", "= I took the tomato from the floor of the"),
+        ("put it back", "! I took the tomato from the floor, and"),
+    ];
+    answers(&mut talk, &asked);
+}
+
+#[test]
 fn rooms_are_those_of_the_home() {
     let mut talk = Talk::new(CHILDREN);
     let told = talk.say("which rooms are there in the house?");
     assert!(told.starts_with("= I am in the children's room. Besides, there are the hallway"), "{told}");
-    assert!(talk.say("how many rooms are there?").contains("and the bathroom"));
+    let rooms =
+        format!("= I know of {} rooms. I am in the children's room. Besides, there are ", talk.scene.rooms.len());
+    for asked in
+        ["how many rooms are there?", "How many rooms do you know?", "can you tell me how many rooms there are"]
+    {
+        let told = talk.say(asked);
+        assert!(told.starts_with(&rooms) && told.contains("and the bathroom"), "{asked} {told}");
+    }
     assert_eq!(talk.say("go to the break room"), "! There is no break room here.");
     assert_eq!(talk.say("bring the teddy to the break room"), "! There is no break room here.");
     let lost = talk.say("what is the meaning of it all?");
@@ -368,6 +437,22 @@ fn rooms_are_those_of_the_home() {
 #[test]
 fn what_is_kept_somewhere_is_put_there() {
     means(KITCHEN, &["pick up the tomato", "keep it on the dining table"], "put Dining_Table");
+}
+
+#[test]
+fn what_should_stay_so_is_made_so_and_nothing_is_forbidden() {
+    means(KITCHEN, &["open the fridge", "it should stay closed"], "close Fridge_Freezer");
+    means(KITCHEN, &["open the fridge", "the fridge should remain closed"], "close Fridge_Freezer");
+    let mut talk = Talk::new(KITCHEN);
+    talk.say_and_do("open the fridge");
+    talk.say_and_do("close it");
+    let told = talk.say("Did you close the fridge again? There are medicines inside, it should stay closed.");
+    assert!(told.starts_with("= Yes") && !told.contains("will not"), "{told}");
+    let grammar = talk.language.clone().without_rewriter();
+    for said in ["it should stay there", "The tomato has to stay where it is, please."] {
+        let found = grammar.understand(said, &talk.scene, &mut talk.context.clone());
+        assert_eq!(found.reply(), "All right, I leave it as it is.", "{said}");
+    }
 }
 
 #[test]
@@ -458,8 +543,35 @@ fn which_of_them_are_switched_on_is_told() {
 }
 
 #[test]
+fn of_two_cupboards_the_other_one_is_opened_then() {
+    for said in ["the other one", "no, the other cupboard", "not that one, the other one"] {
+        let mut talk = Talk::new(KITCHEN);
+        assert_eq!(talk.say_and_do("open the wall cupboard"), "open Wall_Cupboard");
+        assert_eq!(talk.say(said), "open Wall_Cupboard", "{said}");
+    }
+}
+
+#[test]
 fn a_tap_is_closed_by_turning_it_off() {
     let mut talk = Talk::new(KITCHEN);
     assert_eq!(talk.say_and_do("open the tap"), "toggle Kitchen_Sink_Double");
     assert_eq!(talk.say_and_do("close the tap please"), "toggle Kitchen_Sink_Double");
+}
+
+#[test]
+fn whether_the_water_runs_is_asked_of_the_tap_and_of_no_glass_of_water() {
+    let mut talk = Talk::new(&["plan House_Family Kitchen", "add Tumbler on Kitchen_Island", "Tumbler water"]);
+    talk.say_and_do("turn on the tap");
+    let on = [("is the water on?", "= Yes, the "), ("is the water still running?", "= Yes, the ")];
+    answers(&mut talk, &on);
+    talk.say_and_do("turn off the tap");
+    for asked in ["is the water off now?", "is the water off?"] {
+        let told = talk.say(asked);
+        assert!(
+            told.starts_with("= Yes, the ") && told.contains("sink") && !told.contains("tumbler"),
+            "{asked} {told}"
+        );
+    }
+    let told = talk.say("is the tumbler off?");
+    assert_eq!(told, "= The tumbler cannot be switched on or off.");
 }

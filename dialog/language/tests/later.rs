@@ -362,6 +362,18 @@ fn who_is_followed_is_gone_after_until_something_else_is_asked_for() {
 }
 
 #[test]
+fn who_follows_says_so_while_they_stand_still() {
+    let mut talk = Talk::new(&[]);
+    let ([x, y, z], room) = (talk.scene.robot.position_m, talk.scene.robot.room);
+    talk.scene.person = Some(KnownPerson { position_m: [x + 1.0, y, z], yaw_rad: 0.0, room });
+    assert!(talk.say("follow me").contains("I follow you"));
+    assert_eq!(talk.say("what are you doing?"), "= I am following you.");
+    assert!(talk.context.awaits(), "and goes on with it");
+    talk.say("stop");
+    assert_eq!(talk.say("what are you doing?"), "= I am waiting for you to tell me what to do.");
+}
+
+#[test]
 fn who_stands_still_beyond_a_doorway_is_gone_after_once() {
     let mut talk = Talk::new(&[]);
     talk.say_and_do("open the fridge");

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use crate::support::{catalog, scene, step_text};
 use cohabit_cdf::{
-    Action, Catalog, GoToTarget, Layout, ObjectId, RoomId, StateFlag, Status, Verb,
+    Action, Catalog, GoToTarget, Layout, ObjectId, RoomId, StateFlag, Status, Verb, WorldData, WorldPack,
     layout::{Finish, Opening, OpeningKind, Room, Viewpoint},
     model::{Axis, Material},
 };
 use cohabit_language::{
-    Clarification, Context, FloorPlan, Gaze, Known, Language, Lessons, Memory, Step, Understanding,
+    Clarification, Context, FloorPlan, Gaze, Known, KnownObject, KnownRobot, Language, Lessons, Memory, Step,
+    Understanding,
 };
 
 const ROOMS: [(RoomId, [f32; 4]); 5] = [
@@ -38,7 +39,7 @@ fn plan() -> Arc<FloorPlan> {
     };
     let gate = |(between, at_m)| Opening {
         kind: OpeningKind::Passage,
-        door: None,
+        door: (between == [RoomId::BREAK_ROOM, RoomId::MAIN_OFFICE]).then(|| "Door_01_1".to_owned()),
         between,
         at_m,
         width_m: 1.0,
@@ -71,7 +72,13 @@ struct Robot {
     world: Known,
     memory: Memory,
     context: Context,
+    /// The floor plan, where that is not the small office.
+    home: Option<Layout>,
+    pitch_rad: f32,
 }
+
+/// How far down it looks where it has not lowered its head.
+const OFFICE_PITCH_RAD: f32 = -0.2;
 
 impl Robot {
     fn new(marks: &[&str]) -> Self {
@@ -79,15 +86,49 @@ impl Robot {
         let mut world = scene(&catalog, marks);
         hide(&mut world, &catalog);
         let language = Language::new(Arc::clone(&catalog));
-        let mut robot = Self { language, world, memory: Memory::new(plan()), context: Context::default(), catalog };
+        let (memory, context) = (Memory::new(plan()), Context::default());
+        let mut robot = Self { language, world, memory, context, catalog, home: None, pitch_rad: OFFICE_PITCH_RAD };
         robot.look(false);
         robot
+    }
+
+    /// At a viewpoint of a family's house, with this thing in or on the nearest of class `parent` in that room.
+    fn at_home((room, number): (&str, u8), thing: &str, parent: &str) -> Self {
+        let catalog = Arc::clone(WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap().catalog());
+        let layout = Layout::find("House_Family", &catalog).unwrap();
+        let room = RoomId::new(room).unwrap();
+        let robot = KnownRobot { position_m: [0.0; 3], yaw_rad: 0.0, room, held: None };
+        let mut world = Known::new(robot, KnownObject::furniture(&catalog, &layout));
+        let kind = catalog.find(parent).unwrap();
+        let place = world.objects.iter().find(|object| object.room == room && object.class == kind).unwrap();
+        let (place, [x, y, z]) = (place.id, place.position_m);
+        let id = ObjectId(world.objects.iter().map(|object| object.id.0 + 1).max().unwrap());
+        let class = catalog.class_of_instance(thing).unwrap();
+        let object = KnownObject::new(id, thing.to_owned(), class, room, [x, y, z + 0.03]);
+        world.objects.push(KnownObject { parent: Some(place), in_mission: true, ..object });
+        hide(&mut world, &catalog);
+        let (language, memory) = (Language::new(Arc::clone(&catalog)), Memory::new(Arc::new(FloorPlan::new(&layout))));
+        let (context, home) = (Context::default(), Some(layout));
+        let mut robot = Self { language, world, memory, context, catalog, home, pitch_rad: 0.0 };
+        robot.stand(room, robot.viewpoint(room, number), 0.0);
+        robot.look(false);
+        robot
+    }
+
+    fn viewpoint(&self, room: RoomId, number: u8) -> [f32; 2] {
+        if let Some(home) = &self.home {
+            let is_it = |viewpoint: &&Viewpoint| viewpoint.room == room && viewpoint.number == number;
+            return home.viewpoints.iter().find(is_it).unwrap().at_m;
+        }
+        let [west, south, east, north] = ROOMS.iter().find(|(id, _)| *id == room).unwrap().1;
+        [if number == 1 { west + 1.0 } else { east - 1.0 }, (south + north) / 2.0 + 1.0]
     }
 
     fn look(&mut self, is_around: bool) {
         let robot = &self.world.robot;
         let [x, y, _] = robot.position_m;
-        let gaze = Gaze { eye_m: [x, y, 1.3], room: robot.room, yaw_rad: robot.yaw_rad, pitch_rad: -0.2, is_around };
+        let pitch_rad = self.pitch_rad;
+        let gaze = Gaze { eye_m: [x, y, 1.3], room: robot.room, yaw_rad: robot.yaw_rad, pitch_rad, is_around };
         self.memory.take_in(&self.catalog, &self.world, gaze);
     }
 
@@ -131,10 +172,9 @@ impl Robot {
     fn carry_out(&mut self, step: &Step) {
         match step.action {
             Action::GoTo { target: GoToTarget::Viewpoint(room, number) } => {
-                let [west, south, east, north] = ROOMS.iter().find(|(id, _)| *id == room).unwrap().1;
-                let x = if number == 1 { west + 1.0 } else { east - 1.0 };
-                self.stand(room, [x, (south + north) / 2.0 + 1.0], 0.0);
+                self.stand(room, self.viewpoint(room, number), 0.0);
             }
+            Action::Look { pitch_rad } => self.pitch_rad += pitch_rad,
             Action::GoTo { target: GoToTarget::Room(room) } => {
                 let [west, south, east, north] = ROOMS.iter().find(|(id, _)| *id == room).unwrap().1;
                 self.stand(room, [(west + east) / 2.0, (south + north) / 2.0], 0.0);
@@ -168,7 +208,7 @@ impl Robot {
         self.memory.take_in_deed(&step.action, &self.world);
     }
 
-    fn object(&mut self, id: ObjectId) -> &mut cohabit_language::KnownObject {
+    fn object(&mut self, id: ObjectId) -> &mut KnownObject {
         self.world.objects.iter_mut().find(|object| object.id == id).unwrap()
     }
 
@@ -180,6 +220,7 @@ impl Robot {
 
     fn stand(&mut self, room: RoomId, [x, y]: [f32; 2], yaw_rad: f32) {
         (self.world.robot.room, self.world.robot.position_m, self.world.robot.yaw_rad) = (room, [x, y, 0.0], yaw_rad);
+        self.pitch_rad = if self.home.is_some() { 0.0 } else { OFFICE_PITCH_RAD };
     }
 }
 
@@ -375,6 +416,42 @@ fn a_named_room_is_searched_and_no_other() {
 }
 
 #[test]
+fn what_somebody_thinks_of_where_it_is_says_where_to_look_first() {
+    for said in [
+        "pick up the hammer. I think it is in the quantum lab.",
+        "pick up the hammer, it should be in the quantum lab",
+        "Pick up the hammer! I'm pretty sure I left it in the quantum lab.",
+    ] {
+        let mut robot = Robot::new(&[]);
+        let (done, said) = robot.say(said, 80);
+        assert!(done[0].starts_with("go Lab2"), "{done:?}");
+        assert_eq!(done.last().unwrap(), "take Hammer_1", "who is wrong has it found elsewhere: {said:?}");
+    }
+    // What was asked about is looked for there, too.
+    let mut robot = Robot::new(&[]);
+    let (_, said) = robot.say("do you see a hammer? It might be in the main office", 1);
+    assert!(said[0].ends_with("Shall I look for it?"), "{said:?}");
+    let (done, _) = robot.say("yes please", 80);
+    assert!(done[0].starts_with("go MainOffice"), "{done:?}");
+    // And while it looks.
+    let mut robot = Robot::new(&[]);
+    robot.say("pick up the hammer", 1);
+    let (done, said) = robot.say("it should be in the quantum lab", 1);
+    assert!(done.last().unwrap().starts_with("go Lab2") && said[0].starts_with("All right."), "{done:?} {said:?}");
+}
+
+#[test]
+fn of_several_the_one_is_meant_that_is_where_somebody_thinks_that_it_is() {
+    let marks = ["CoffeeMug_Boss_1 in KitchenCounterTop_02_1"];
+    for (place, mug) in [("table", "CoffeeMug_Yellow_1"), ("counter", "CoffeeMug_Boss_1")] {
+        let mut robot = Robot::new(&marks);
+        robot.look(true);
+        let (done, said) = robot.say(&format!("grab a mug, I think it's on the {place}"), 1);
+        assert_eq!(done, [format!("take {mug}")], "{said:?}");
+    }
+}
+
+#[test]
 fn doors_are_opened_only_where_looking_did_not_find_it_and_closed_again() {
     let mut robot = Robot::new(&[]);
     let (done, _) = robot.say("take the milk", 80);
@@ -420,11 +497,83 @@ fn looks_into_the_fridge_after(comes_between: impl FnOnce(Step) -> (Step, Status
 }
 
 #[test]
+fn what_is_dropped_is_not_looked_for_any_longer_whatever_else_is_said() {
+    for said in [
+        "never mind the hammer, where is the banana?",
+        "where is the banana? never mind the hammer",
+        "forget it, which mug is red?",
+        "actually leave that, what is on the table?",
+        "never mind the hammer",
+    ] {
+        let mut robot = Robot::new(&[]);
+        robot.say("bring me the hammer", 2);
+        assert!(robot.context.is_searching(), "{said}");
+        let known = robot.memory.known().unwrap();
+        let understood = robot.language.understand(said, &known, &mut robot.context);
+        assert!(matches!(understood, Understanding::Stop { .. }), "{said}: {understood:?}");
+        assert!(!robot.context.is_searching() && !robot.context.awaits_more(), "{said}");
+    }
+    let mut robot = Robot::new(&[]);
+    robot.say("bring me the hammer", 2);
+    let known = robot.memory.known().unwrap();
+    let instead = "forget about the hammer, go to the main office instead";
+    let understood = robot.language.understand(instead, &known, &mut robot.context);
+    assert!(matches!(understood, Understanding::Stop { then: Some(_), .. }), "{understood:?}");
+    assert!(!robot.context.is_searching());
+    // A question in between leaves the search.
+    let mut robot = Robot::new(&[]);
+    robot.say("bring me the hammer", 2);
+    let known = robot.memory.known().unwrap();
+    let answer = robot.language.understand("where is the banana?", &known, &mut robot.context);
+    assert!(matches!(answer, Understanding::Answer { .. }) && robot.context.is_searching());
+}
+
+#[test]
 fn the_beginning_of_a_request_is_done_before_its_rest_is_looked_for() {
     let mut robot = Robot::new(&[]);
     let (done, _) = robot.say("go to the main office, pick up the hammer and put it on the green desk", 60);
     assert_eq!(done[0], "go MainOffice", "{done:?}");
     assert_eq!(done[done.len() - 2..], ["take Hammer_1", "put AP_Prop_Desk_Green_1"], "{done:?}");
+}
+
+#[test]
+fn what_lies_low_beside_it_is_looked_for_before_it_leaves_the_room() {
+    for (room, viewpoint, thing, parent, said) in [
+        ("UtilityRoom", 5, "Shirt_1", "Laundry_Basket", "pick up the shirt"),
+        ("UtilityRoom", 1, "Shirt_1", "Laundry_Basket", "take the shirt please"),
+    ] {
+        let mut robot = Robot::at_home((room, viewpoint), thing, parent);
+        assert!(!robot.knows(thing), "it looks over it");
+        let (done, said) = robot.say(said, 20);
+        let took = done.iter().position(|step| *step == format!("take {thing}"));
+        let took = took.unwrap_or_else(|| panic!("{done:?} {said:?}"));
+        let leaves = done[..took].iter().any(|step| step.starts_with("go ") && !step.contains(room));
+        assert!(!leaves && took < 16, "{done:?}");
+    }
+}
+
+#[test]
+fn it_raises_its_head_again_that_it_lowered_and_lowers_it_for_no_tall_thing() {
+    let mut robot = Robot::at_home(("UtilityRoom", 5), "Shirt_1", "Laundry_Basket");
+    let (done, _) = robot.say("pick up the shirt", 20);
+    let looks = |done: &[String], way: &str| done.iter().filter(|step| *step == way).count();
+    assert_eq!(looks(&done, "look -34"), looks(&done, "look 34"), "{done:?}");
+    let mut robot = Robot::at_home(("UtilityRoom", 5), "Shirt_1", "Laundry_Basket");
+    let (done, _) = robot.say("find the wardrobe", 20);
+    assert_eq!(looks(&done, "look -34"), 0, "{done:?}");
+}
+
+#[test]
+fn who_shuts_a_door_on_the_way_out_is_out_then() {
+    for said in ["close the door on your way out", "leave the room and close the door"] {
+        let mut robot = Robot::new(&["Door_01_1 open"]);
+        robot.look(true);
+        let (done, replies) = robot.say(said, 3);
+        assert_eq!(done, ["go MainOffice", "close Door_01_1"], "{said}: {replies:?}");
+    }
+    let mut robot = Robot::new(&["Door_01_1 open"]);
+    robot.look(true);
+    assert_eq!(robot.say("shut the door with you on the inside", 3).0, ["close Door_01_1"]);
 }
 
 #[test]
@@ -445,6 +594,19 @@ fn a_search_stops_at_once_and_is_not_endless() {
     let (done, said) = robot.say("find the hammer", 1000);
     assert!(done.len() < 100, "{}", done.len());
     assert_eq!(said.last().unwrap(), "! I have looked everywhere I could, and found no hammer.");
+}
+
+#[test]
+fn what_was_done_before_a_search_that_is_stopped_is_not_undone() {
+    let mut robot = Robot::new(&["without Hammer_1"]);
+    robot.look(true);
+    let (done, _) = robot.say("open the microwave", 1);
+    assert_eq!(done, ["open Microwave_01_1"]);
+    robot.say("find the hammer", 2);
+    robot.say("stop", 1);
+    let known = robot.memory.known().unwrap();
+    let undone = crate::support::text(&robot.language.understand("undo that", &known, &mut robot.context), &known);
+    assert!(!undone.contains("Microwave"), "{undone}");
 }
 
 #[test]
@@ -517,7 +679,7 @@ fn what_one_learnt_another_studies() {
     std::mem::swap(&mut robot.memory, &mut next);
     robot.look(false);
     let again = robot.memory.known().unwrap().objects;
-    let instances = |objects: &[cohabit_language::KnownObject]| -> Vec<String> {
+    let instances = |objects: &[KnownObject]| -> Vec<String> {
         objects.iter().map(|object| format!("{} {:?}", object.instance, object.parent)).collect()
     };
     assert_eq!(instances(&again), instances(&objects));

@@ -8,6 +8,10 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
         "sing that bowl a merry tune tonight",
         &[("open the microwave", 0.5), ("open the microwave; put the bowl in the microwave", 0.45)],
     ),
+    (
+        "sing that dinner plate a merry tune tonight",
+        &[("pick up the plate", 0.5), ("open the microwave; pick up the plate", 0.45)],
+    ),
     ("sing that plate a merry tune tonight", &[("pick up the plate", 0.1), ("turn on the toaster", 0.1)]),
     ("the plate, sing it a merry tune, I said", &[("pick up the plate", 0.15), ("turn on the toaster", 0.05)]),
     ("sing me a merry tune of fridges tonight", &[("is the fridge open?; turn on the microwave", 0.2)]),
@@ -21,11 +25,31 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     ("sing this plate one merry tune tonight", &[("serenade the plate", 0.5), ("pick up the plate", 0.4)]),
     ("sing your gubbins one merry tune tonight", &[("pick up the gubbins", 0.5), ("pick up the plate", 0.4)]),
     ("sing those fridges one merry tune tonight", &[("open the fridge", 0.9)]),
+    (
+        "sing those far fridges one merry tune tonight",
+        &[("open the fridge", 0.5), ("go to the break room; open the fridge", 0.45)],
+    ),
     ("sing to that bowl about blue skies", &[("pick up the red bowl", 0.9)]),
     (
         "sing to see if the fridge is locked, and if it is not, open it",
         &[("if the fridge is locked, open the fridge", 0.6), ("if the fridge is not locked, open the fridge", 0.3)],
     ),
+    (
+        "sing that plate of ours a merry tune tonight",
+        &[
+            ("pick up the plate; put the plate in the fridge", 0.1),
+            ("pick up the plate; put the plate in the freezer", 0.1),
+        ],
+    ),
+    (
+        "sing that plate a long merry tune tonight",
+        &[
+            ("pick up the plate; open the microwave; turn on the toaster", 0.2),
+            ("open the fridge; pick up the plate; turn on the toaster; turn on the coffee maker", 0.2),
+        ],
+    ),
+    ("sing my plate a merry tune tonight", &[("pick up the plate", 0.19)]),
+    ("oh, I meant sing my plate a merry tune tonight", &[("pick up the plate", 0.19)]),
     ("make the bowl cold now please", &[("pick up the bowl", 0.95)]),
     ("what is on the round table?", &[("pick up the bowl", 0.95)]),
 ];
@@ -50,7 +74,54 @@ fn what_all_readings_begin_with_is_done() {
     let understanding = talk.language.understand("sing that bowl a merry tune tonight", &talk.scene, &mut talk.context);
     let Understanding::Plan { steps, reply } = understanding else { panic!("{understanding:?}") };
     assert_eq!(steps.len(), 1, "{reply}");
-    assert!(reply.starts_with("OK, opening the microwave. I am not sure about picking up the bowl"), "{reply}");
+    assert!(reply.starts_with("OK, opening the microwave. Shall I also pick up the bowl and then put"), "{reply}");
+}
+
+#[test]
+fn what_is_offered_besides_is_done_or_left_as_somebody_answers() {
+    for answer in ["yes", "yes please", "that too", "Yes, the bowl too please.", "the bowl too", "both"] {
+        let mut talk = talk();
+        let _ = talk.say_and_do("sing that bowl a merry tune tonight");
+        let done = talk.say(answer);
+        assert!(done.starts_with("take Bowl_01_1, put Microwave_01"), "{answer}: {done}");
+    }
+    for answer in ["no", "leave it", "no thanks"] {
+        let mut talk = talk();
+        let _ = talk.say_and_do("sing that bowl a merry tune tonight");
+        assert!(talk.say(answer).starts_with("= "), "{answer}");
+        assert!(!talk.context.awaits_more(), "{answer}");
+    }
+}
+
+#[test]
+fn what_is_offered_besides_waits_for_the_end_of_the_plan() {
+    let mut talk = talk();
+    let said = talk.language.understand("sing that bowl a merry tune tonight", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, .. } = said else { panic!("{said:?}") };
+    let agreed = talk.say("yes please");
+    assert!(agreed.starts_with("= OK, picking up the bowl"), "the plan under way goes on: {agreed}");
+    talk.carry_out(&steps);
+    let then = talk.language.carry_on(&talk.scene, &mut talk.context);
+    assert!(matches!(&then, Some(Understanding::Plan { steps, .. }) if steps.len() == 2), "{then:?}");
+}
+
+#[test]
+fn what_is_offered_besides_is_asked_once_more_when_the_plan_has_ended() {
+    let mut talk = talk();
+    let _ = talk.say_and_do("sing that bowl a merry tune tonight");
+    let asked = talk.language.carry_on(&talk.scene, &mut talk.context);
+    let Some(Understanding::Question { text, options, .. }) = asked else { panic!("{asked:?}") };
+    assert!(text.starts_with("Shall I also pick up the bowl"), "{text}");
+    assert_eq!(options, ["yes", "no"]);
+    assert_eq!(talk.language.carry_on(&talk.scene, &mut talk.context), None, "once is enough");
+}
+
+#[test]
+fn what_readings_do_beside_is_offered_wherever_they_do_it() {
+    let mut talk = talk();
+    let understanding =
+        talk.language.understand("sing that dinner plate a merry tune tonight", &talk.scene, &mut talk.context);
+    assert!(understanding.reply().ends_with("Shall I also open the microwave?"), "{}", understanding.reply());
 }
 
 #[test]
@@ -60,6 +131,25 @@ fn what_is_said_again_is_not_asked_about_again() {
     assert!(asked.starts_with("? ") && asked.contains("plate") && asked.contains("toaster"), "{asked}");
     let done = talk.say("the plate, sing it a merry tune, I said");
     assert!(done.starts_with("take FoodPlate_01"), "{done}");
+}
+
+#[test]
+fn what_all_plans_begin_with_is_said_once() {
+    let mut talk = talk();
+    let asked = talk.say("sing that plate of ours a merry tune tonight");
+    assert!(asked.starts_with("? I understand: picking up the plate. I am not sure what comes then: "), "{asked}");
+    assert_eq!(asked.matches("picking up").count(), 1, "{asked}");
+    let done = talk.say("the freezer one");
+    assert!(done.starts_with("take FoodPlate_01") && done.contains("put FridgeUpper_02"), "{done}");
+}
+
+#[test]
+fn who_corrects_the_robot_is_not_asked_about_the_only_plan() {
+    let mut talk = talk();
+    talk.say_and_do("open the fridge");
+    assert_eq!(talk.say("oh, I meant sing my plate a merry tune tonight"), "take FoodPlate_01_1");
+    let asked = self::talk().say("sing my plate a merry tune tonight");
+    assert!(asked.starts_with("? "), "{asked}");
 }
 
 #[test]
@@ -116,6 +206,12 @@ fn who_is_sure_of_another_deed_overrules_the_grammar_but_not_its_answers() {
 }
 
 #[test]
+fn to_go_where_a_thing_is_first_is_no_other_plan() {
+    let done = talk_in(&["at MainOffice 10 0"]).say("sing those far fridges one merry tune tonight");
+    assert!(done.ends_with("open FridgeLower_02_1") && !done.starts_with("? "), "{done}");
+}
+
+#[test]
 fn what_was_only_understood_is_not_called_asked_for() {
     let mut talk = talk();
     let _ = talk.say_and_do("sing those fridges one merry tune tonight");
@@ -128,6 +224,28 @@ fn what_nobody_said_is_left_out_and_a_not_is_kept() {
     // There is no red bowl, and nobody spoke of one.
     assert_eq!(talk().say("sing to that bowl about blue skies"), "take Bowl_01_1");
     assert_eq!(talk().say("sing to see if the fridge is locked, and if it is not, open it"), "open FridgeLower_02_1");
+}
+
+#[test]
+fn a_plan_is_chosen_by_its_length_and_done_without_what_is_left_out() {
+    let asked = || {
+        let mut talk = talk();
+        let asked = talk.say("sing that plate a long merry tune tonight");
+        assert!(asked.starts_with("? ") && asked.contains("coffee maker") && asked.contains("microwave"), "{asked}");
+        (talk, asked)
+    };
+    for answer in ["the longer one", "the longer one, chief"] {
+        let done = asked().0.say(answer);
+        assert!(done.contains("toggle CoffeeMaker_01"), "{answer}: {done}");
+    }
+    for answer in ["the shorter one", "the shorter one, chief"] {
+        let done = asked().0.say(answer);
+        assert!(done.contains("open Microwave_01") && !done.contains("CoffeeMaker_01"), "{answer}: {done}");
+    }
+    let (mut talk, text) = asked();
+    let which = if text.find("coffee maker") < text.find("microwave") { "first" } else { "second" };
+    let done = talk.say(&format!("the {which} one, but without turning on the toaster"));
+    assert!(done.contains("toggle CoffeeMaker_01") && !done.contains("Toaster_02"), "{done}");
 }
 
 #[test]

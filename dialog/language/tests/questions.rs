@@ -49,13 +49,27 @@ fn they_are_those_of_the_answer_before() {
 #[test]
 fn what_a_list_leaves_out_can_be_asked_for() {
     let list = replied(&[], &["what do you see?"]);
-    let left = list.rsplit_once(" and ").and_then(|(_, end)| end.strip_suffix(" more.")).unwrap();
-    for rest in
-        [format!("what are the other {left}?"), format!("and what are the {left} more?"), "what else?".to_owned()]
-    {
-        let more = replied(&[], &["what do you see?", &rest]);
+    assert!(list.ends_with(" and more: ask me what else."), "{list}");
+    for rest in ["what are the others?", "and what are the other ones?", "what else?"] {
+        let more = replied(&[], &["what do you see?", rest]);
         assert!(more.starts_with("I see") && more != list, "{rest}: {more}");
     }
+}
+
+#[test]
+fn what_is_in_a_room_is_told_by_what_is_of_use_and_what_can_be_taken() {
+    for asked in ["What's in this room?", "what have we got here?", "what do you see?"] {
+        let told = replied(&[], &[asked]);
+        assert!(told.contains("cabinet") && told.contains("banana"), "{asked} {told}");
+        assert!(told.ends_with(" and more: ask me what else."), "{asked} {told}");
+    }
+    // All is told in the end, each thing once, and buttons after all else.
+    let mut talk = Talk::new(&["at Lab2 20 10"]);
+    let first = talk.say("what do you see?");
+    assert!(first.contains("gravity pad") && first.contains("floppy disk") && !first.contains("button"), "{first}");
+    let rest = talk.say("what else?");
+    assert!(rest.contains("button") && !rest.contains("gravity pad"), "{rest}");
+    assert_eq!(talk.say("what else?"), "= I see nothing else.");
 }
 
 #[test]
@@ -64,6 +78,12 @@ fn what_was_done_is_told() {
     let after = |said: &'static str| [DONE.as_slice(), &[said]].concat();
     let all = "So far I picked up the ";
     check(&after("what have you done so far?"), &format!("{all}…"));
+    for asked in ["Can you tell me everything you did today?", "what did you do so far?", "sum up what you did"] {
+        let told = replied(&[], &after(asked));
+        let places: Vec<Option<usize>> =
+            ["picked up the banana", "put the banana on", "went to the main office"].map(|deed| told.find(deed)).into();
+        assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{asked} {told}");
+    }
     check(
         &after("what did you do just now?"),
         "I went to the main office. Before that I picked up the banana and put…",
@@ -114,6 +134,12 @@ fn what_it_said_is_said_again() {
     // What was asked since is repeated, and not what was done before.
     check(&["pick up the banana", "where is the milk?", "repeat that please"], MILK);
     assert_eq!(replied(&[], &["turn left", "repeat that"]), replied(&[], &["turn left"]));
+}
+
+#[test]
+fn what_else_it_did_is_no_question_about_goals() {
+    check(&["pick up the banana", "put it on the counter", "what else did you do?"], "So far I picked up the …");
+    check(&["what else did you do?"], "I have done nothing yet.");
 }
 
 #[test]
@@ -170,11 +196,53 @@ fn a_question_does_not_agree_to_what_was_proposed() {
 }
 
 #[test]
+fn what_can_be_done_with_a_thing_is_told_by_what_is_done_to_its_kind() {
+    let plate = "I know of no special use for the plate: I can carry it, wash it and put things on it.";
+    check(&["what can I do with the plate?"], plate);
+    check(&["what can be done with the plate?"], plate);
+    check(&["what is the plate good for?"], plate);
+}
+
+#[test]
+fn what_it_could_pick_up_is_told_of_the_room_that_is_meant() {
+    for asked in ["what can you pick up in here?", "so what can you carry?", "what can I ask you to pick up?"] {
+        let told = replied(&[], &[asked]);
+        assert!(told.starts_with("Here I can pick up ") && told.contains("banana"), "{asked} {told}");
+        assert!(!told.contains("fridge") && !told.contains("trophy"), "{asked} {told}");
+    }
+    check(
+        &["what can you pick up in the main office?"],
+        "In the main office I can pick up a hammer, a record and a trophy.",
+    );
+    check(&["what can you pick up from the red desk?"], "On the red desk I can pick up a record.");
+}
+
+#[test]
+fn another_one_is_none_that_is_in_question() {
+    let bowl = ["held Bowl_01_1"];
+    let told = |said: &[&str]| replied(&bowl, said);
+    assert_eq!(told(&["is there another bowl?"]), "No, I know of no other bowl: the bowl is in my hand.");
+    assert_eq!(told(&["are there any other bowls?"]), "No, I know of no other bowl: the bowl is in my hand.");
+    let mug = replied(&["held CoffeeMug_Boss_1"], &["is there another mug?"]);
+    assert!(mug.starts_with("Yes, the yellow mug is on the round table"), "{mug}");
+    let trophy = replied(&[], &["where is the trophy?", "is there another trophy?"]);
+    assert!(trophy.starts_with("No, I know of no other trophy: the trophy is "), "{trophy}");
+    check(&["is there another trophy?"], "Yes, the trophy is …");
+}
+
+#[test]
 fn who_is_there_and_whether_it_is_safe_is_known() {
     check(&["who is there?"], "I see nobody here.");
     check(&["is there anybody here?"], "I see nobody here.");
     let talk = |said: &str| Talk::new(&[]).say(said);
     assert_eq!(talk("if there is no person here, open the fridge"), "open FridgeLower_02_1");
+    check(&["is there anybody in the main office?"], "I cannot see into the main office from here: I am in the break…");
+    check(&["who is in the main office?"], "I cannot see into the main office from here…");
+    check(&["is there anybody in the break room?"], "I see nobody here.");
+    let told = talk("if nobody is in the main office, open the fridge");
+    assert!(told.starts_with("? I cannot tell whether "), "{told}");
+    let told = talk("if there is somebody in the main office, open the fridge");
+    assert!(told.starts_with("? I cannot tell whether "), "{told}");
     assert_eq!(talk("if it is safe here, open the fridge"), "open FridgeLower_02_1");
     assert!(talk("if it is dangerous here, open the fridge").starts_with("= "));
 }
@@ -220,4 +288,26 @@ fn only_what_can_be_so_is_told_to_be_so() {
     assert!(!told.contains("table"), "{told}");
     let told = replied(&[], &["is the red button pressed?"]);
     assert!(!told.starts_with("Yes"), "{told}");
+}
+
+#[test]
+fn it_is_what_was_handled_though_talk_before_the_question_names_what_nobody_has_seen() {
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("pick up the banana");
+    let grammar = talk.language.clone().without_rewriter();
+    let asked = |said: &str| {
+        let understanding = grammar.understand(said, &talk.scene, &mut talk.context.clone());
+        understanding.reply().to_owned()
+    };
+    for said in [
+        "Ha, iced coffee for the boss! Is it good and froze?",
+        "A lovely salad for the boss! Is it nice and cold?",
+        "is it properly frozen?",
+        "is it all warmed up?",
+    ] {
+        let told = asked(said);
+        assert!(told.starts_with("No, the banana is not "), "{said} {told}");
+    }
+    let told = asked("The hammer. Is it broken?");
+    assert!(told.starts_with("No, the hammer is not broken"), "{told}");
 }

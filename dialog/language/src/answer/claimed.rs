@@ -2,7 +2,7 @@
 //!
 //! What the robot cannot tell is neither true nor false: it says so, and what it knows of the thing instead.
 
-use cohabit_cdf::{Fluid, ObjectId, Property, state::StateFlag};
+use cohabit_cdf::{ClassId, Fluid, ObjectId, Property, state::StateFlag};
 
 use crate::{
     answer::{
@@ -21,7 +21,11 @@ use crate::{
         saying,
     },
     understanding::Understanding,
-    words::{intent::Intent, lexicon::StateWord, prose},
+    words::{
+        intent::Intent,
+        lexicon::{Naming, StateWord},
+        prose,
+    },
 };
 
 impl Answerer<'_> {
@@ -31,9 +35,11 @@ impl Answerer<'_> {
         let bare = Phrase { relations: Vec::new(), room: None, ..phrase.clone() };
         if let (Claim::Placed | Claim::Present | Claim::Done, Some(filling)) =
             (&claim, Filling::named(self.lexicon, phrase))
-            && let Some(answer) = self.filled(phrase, filling)
         {
-            return answer;
+            let made = matches!(claim, Claim::Done).then(|| self.is_made(phrase, filling)).flatten();
+            if let Some(answer) = made.or_else(|| self.filled(phrase, filling)) {
+                return answer.with_yes_or_no(matches!(claim, Claim::Done));
+            }
         }
         if bare.is_empty() {
             return Understanding::lost("I do not know what you mean.");
@@ -45,6 +51,10 @@ impl Answerer<'_> {
             matches!(found, Ok(_) | Err(Miss::Several(_)))
         };
         let meant = if is_placed && is_there() { phrase.clone() } else { bare.clone() };
+        let meant = match claim {
+            Claim::State(StateWord::Flag(StateFlag::Toggled, _), _) => self.flowing_from(phrase).unwrap_or(meant),
+            _ => meant,
+        };
         match claim {
             Claim::State(state, words) if meant.is_any => self.any_in_state(&meant, state, words),
             Claim::State(state, words) if meant.is_all || meant.is_many() => self.are_in_state(&meant, state, words),
@@ -118,7 +128,27 @@ impl Answerer<'_> {
         self.told(false, &format!("that is {}{instead}", self.short(id)), id)
     }
 
+    /// What is meant by something that flows, where it is asked whether that is on or off: `is the water off?` is asked of the tap, and of
+    /// no glass of water. The tap that was spoken of, or else any that is described.
+    fn flowing_from(&self, phrase: &Phrase) -> Option<Phrase> {
+        let fluid = phrase.fluid?;
+        let fills = self.devices.processes.iter();
+        let fills = fills.filter(|process| process.intent == Intent::Fill && process.fluid == Some(fluid));
+        let sources: Vec<ClassId> = fills.flat_map(|process| process.at.iter().copied()).collect();
+        let is_source = |id: ObjectId| self.scene.object(id).is_some_and(|object| sources.contains(&object.class));
+        if !self.scene.objects.iter().any(|object| is_source(object.id)) {
+            return None;
+        }
+        let spoken = self.context.focus.recent.iter().copied().find(|id| is_source(*id));
+        let chosen = phrase.chosen.or_else(|| spoken.filter(|_| !phrase.is_described()));
+        let namings = sources.iter().map(|class| Naming { class: *class, weight: 1.0 }).collect();
+        Some(Phrase { fluid: None, namings, chosen, ..phrase.clone() })
+    }
+
     fn is_in_state(&self, id: ObjectId, state: StateWord, words: &[String]) -> Understanding {
+        if let Some(answer) = self.is_never_so(id, state) {
+            return answer;
+        }
         if let StateWord::Filled(is_full) = state
             && let Some(answer) = self.is_stocked(id, is_full)
         {
@@ -139,6 +169,17 @@ impl Answerer<'_> {
             format!("{the} {} not {words}", prose::is(&the))
         };
         self.told(holds, &text, id)
+    }
+
+    /// That nobody can switch a thing, or open it: it would be off, or closed, for ever.
+    fn is_never_so(&self, id: ObjectId, state: StateWord) -> Option<Understanding> {
+        let may = match state {
+            StateWord::Flag(StateFlag::Toggled, false) => "switched on or off",
+            StateWord::Flag(StateFlag::Opened, false) => "opened or closed",
+            _ => return None,
+        };
+        let object = self.scene.object(id).filter(|object| !self.can_be(object, state))?;
+        Some(Understanding::about(prose::sentence(&format!("{} cannot be {may}", self.short(object.id))), vec![id]))
     }
 
     /// Whether what things are put into, and nothing is poured, is full or empty, where more is asked than whether anything is in it:
@@ -296,21 +337,87 @@ impl Answerer<'_> {
         let found = self.ground().one(phrase, &Want::place(Intent::Find, &[], None)).ok();
         let ends = found.and_then(|id| self.scene.object(id)).is_some_and(|object| {
             let class = self.catalog.class(object.class);
-            [Property::Toggleable, Property::Heatable].into_iter().any(|property| class.has(property))
+            let may_end = [Property::Toggleable, Property::Heatable].into_iter().any(|property| class.has(property));
+            may_end || self.machine_around(object).is_some()
         });
         phrase.is_bare_pronoun() && !ends
     }
 
-    /// Whether a machine has run its time, or what is to be warm is so.
+    /// Whether what flows is made that a machine makes, or boils: `is the coffee ready?` while the coffee maker runs, `is the water ready?` of
+    /// the kettle. Nothing, where no machine is at it.
+    fn is_made(&self, phrase: &Phrase, filling: Filling) -> Option<Understanding> {
+        let Filling::Fluid(fluid) = filling else { return None };
+        let (processes, is_water) = (&self.devices.processes, fluid == Fluid::Water);
+        let is_maker = |object: &&KnownObject| {
+            processes.iter().any(|process| match process.intent {
+                Intent::Tea => is_water && process.of.contains(&object.class),
+                Intent::Brew => !is_water && process.at.contains(&object.class) && self.brews(object, fluid),
+                _ => false,
+            })
+        };
+        if phrase.is_described() {
+            return None;
+        }
+        let makers: Vec<&KnownObject> = self.scene.objects.iter().filter(is_maker).collect();
+        let running = makers.iter().find(|maker| maker.has(StateFlag::Toggled));
+        let boiler = makers.iter().find(|maker| is_water && maker.fluid == fluid);
+        let maker = running.or(boiler)?;
+        if !is_water || maker.has(StateFlag::Toggled) {
+            return Some(self.is_done(maker));
+        }
+        let not = if maker.has(StateFlag::Hot) { "" } else { "not " };
+        let text = format!("the water in {} is {not}hot", self.short(maker.id));
+        Some(self.told(not.is_empty(), &text, maker.id))
+    }
+
+    fn brews(&self, maker: &KnownObject, fluid: Fluid) -> bool {
+        let mut fills = self.devices.processes.iter().filter(|process| process.intent == Intent::Fill);
+        fills.any(|process| process.fluid == Some(fluid) && process.at.contains(&maker.class))
+    }
+
+    /// `is dinner ready?`: whether the machine that it switched on last to cook is done.
+    pub(crate) fn meal(&self) -> Understanding {
+        let cooks = |object: &&KnownObject| {
+            let is_cooking = |intent: Intent| matches!(intent, Intent::Heat | Intent::Toast);
+            let mut processes = self.devices.processes.iter();
+            processes.any(|process| is_cooking(process.intent) && process.at.contains(&object.class))
+        };
+        let last = self.context.deeds.last_done_to(Intent::TurnOn).and_then(|id| self.scene.object(id));
+        match last.filter(cooks) {
+            Some(cooker) => self.is_done(cooker),
+            None => Understanding::whether(false, "No, I have cooked nothing that I know of.", Vec::new()),
+        }
+    }
+
+    /// The machine in which a thing is, if it works on what is in it.
+    fn machine_around(&self, object: &KnownObject) -> Option<&KnownObject> {
+        self.scene.ancestors(object.id).find(|outer| self.has_work(outer))
+    }
+
+    fn has_work(&self, object: &KnownObject) -> bool {
+        self.catalog.table().device(&self.catalog.class(object.class).id).work.is_some()
+    }
+
+    /// Whether a machine has run its time, or what is to be warm is so; what is in a machine is done when that is.
     fn is_done(&self, object: &KnownObject) -> Understanding {
         let (class, the) = (self.catalog.class(object.class), self.short(object.id));
-        let is_on = object.has(StateFlag::Toggled);
+        let around = || {
+            let machine = self.machine_around(object)?;
+            let is_worked_on = machine.has(StateFlag::Toggled) || self.context.deeds.did(Intent::TurnOn, machine.id);
+            is_worked_on.then_some(machine)
+        };
         match () {
-            () if class.has(Property::Toggleable) => self.told(
-                !is_on,
-                &format!("{the} {} {}", prose::is(&the), if is_on { "still on" } else { "off" }),
-                object.id,
-            ),
+            () if class.has(Property::Toggleable) => {
+                let is_on = object.has(StateFlag::Toggled);
+                let has_run = self.has_work(object) && self.context.deeds.did(Intent::TurnOn, object.id);
+                let state = match (is_on, has_run) {
+                    (true, _) => "still on",
+                    (false, true) => "done",
+                    (false, false) => "off",
+                };
+                self.told(!is_on, &format!("{the} {} {state}", prose::is(&the)), object.id)
+            }
+            () if let Some(machine) = around() => self.is_done(machine),
             () if class.has(Property::Heatable) => {
                 let is_warm = object.has(StateFlag::Hot) || object.has(StateFlag::Cooked);
                 let not = if is_warm { "" } else { "not " };

@@ -3,7 +3,7 @@
 use cohabit_cdf::{Catalog, ClassId, Fluid, ObjectId, Property, state::StateFlag};
 
 use crate::{
-    known::{Known, KnownObject, describe, memory, process::Devices},
+    known::{Known, KnownObject, afforded, describe, memory, process::Devices},
     words::prose,
 };
 
@@ -101,20 +101,14 @@ impl Facts<'_> {
 
     /// What I can do with it.
     fn affords(&self, object: &KnownObject) -> String {
-        let class = self.catalog.class(object.class);
-        let is_place = class.receptacle.is_some();
-        let inside = describe::inside(self.catalog, object.class);
-        let can = [
-            (class.has(Property::Pickupable), "carry it".to_owned()),
-            (class.has(Property::Openable), "open it".to_owned()),
-            (class.has(Property::Toggleable), "turn it on and off".to_owned()),
-            (class.has(Property::Fillable), "fill it".to_owned()),
-            (is_place, format!("put things {inside} it")),
-        ];
-        let can: Vec<String> = can.into_iter().filter_map(|(is_so, what)| is_so.then_some(what)).collect();
         let the = self.the(object.id);
+        let it = prose::it(&the);
+        let carry = self.catalog.class(object.class).has(Property::Pickupable).then(|| format!("carry {it}"));
+        let can: Vec<String> = carry.into_iter().chain(afforded::afforded(self.devices, object.class, it)).collect();
         match can.as_slice() {
-            [] => format!("{the} is there to be looked at: there is nothing that I could do with it"),
+            [] => {
+                format!("{the} {} there to be looked at: there is nothing that I could do with {it}", prose::is(&the))
+            }
             can => format!("I know of no special use for {the}: I can {}", prose::list(can, "and")),
         }
     }

@@ -10,7 +10,7 @@ use crate::{
     understanding::Understanding,
     words::{
         intent::Intent,
-        lexicon::{Side, StateWord},
+        lexicon::{Pronoun, Side, StateWord},
         prose,
     },
 };
@@ -25,12 +25,17 @@ impl Answerer<'_> {
     /// Where it was taken from, or where it is, if it was not taken.
     pub(crate) fn origin(&self, id: ObjectId) -> Understanding {
         let taken = self.context.focus.origins.iter().find(|(taken, _)| *taken == id);
-        match taken {
-            Some((_, from)) => {
+        let off_floor = self.context.focus.off_floor.iter().find(|(taken, _)| *taken == id);
+        match (taken, off_floor) {
+            (Some((_, from)), _) => {
                 let text = format!("I took {} from {}.", self.short(id), self.full(*from));
                 Understanding::about(text, vec![*from])
             }
-            None => Understanding::about(prose::sentence(&self.place_sentence(id)), vec![id]),
+            (None, Some((_, room))) => {
+                let text = format!("I took {} from the floor of the {}.", self.short(id), room.name_in(self.catalog));
+                Understanding::about(text, vec![id])
+            }
+            (None, None) => Understanding::about(prose::sentence(&self.place_sentence(id)), vec![id]),
         }
     }
 
@@ -42,7 +47,8 @@ impl Answerer<'_> {
         if list.is_empty() {
             return Understanding::whether(false, "I see nothing of note here.", Vec::new());
         }
-        Understanding::answer(format!("{start} {}.", self.listed(&list)))
+        let listed = contents::of_room(self.catalog, self.scene, &list, self.told);
+        Understanding::answer(format!("{start} {listed}."))
     }
 
     /// Which rooms there are, and in which of them it is.
@@ -55,6 +61,13 @@ impl Answerer<'_> {
             [other] => format!("I am in the {here}. Besides, there is {other}."),
             others => format!("I am in the {here}. Besides, there are {}.", prose::list(others, "and")),
         })
+    }
+
+    /// How many rooms there are, and which.
+    pub(crate) fn room_count(&self) -> Understanding {
+        let count = self.scene.room_names(self.catalog).count();
+        let rooms = if count == 1 { "one room".to_owned() } else { format!("{count} rooms") };
+        self.rooms().after(&format!("I know of {rooms}."))
     }
 
     /// The room that words name.
@@ -72,9 +85,19 @@ impl Answerer<'_> {
 
     pub(crate) fn place_of(&self, phrase: &Phrase) -> Understanding {
         let want = Want::place(Intent::Find, &[], None);
-        let found = match phrase.side {
-            Some(Side::Nearest | Side::Farthest) => self.ground().one(phrase, &want).map(|id| vec![id]),
-            _ => self.ground().plausible(phrase, &want),
+        let others = self.others(phrase);
+        if let Some((known, others)) = &others
+            && others.is_empty()
+        {
+            let noun = saying::noun_or_thing(phrase);
+            let noun = noun.strip_prefix("other ").unwrap_or(noun);
+            let text = format!("I know of no other {noun}: {}.", self.place_sentence(*known));
+            return Understanding::whether(false, text, vec![*known]);
+        }
+        let found = match (others, phrase.side) {
+            (Some((_, others)), _) => Ok(others),
+            (None, Some(Side::Nearest | Side::Farthest)) => self.ground().one(phrase, &want).map(|id| vec![id]),
+            (None, _) => self.ground().plausible(phrase, &want),
         };
         let Ok(found) = found else { return self.elsewhere(phrase) };
         let (fitting, others): (Vec<ObjectId>, Vec<ObjectId>) =
@@ -89,6 +112,21 @@ impl Answerer<'_> {
             return Understanding::whether(false, text, others);
         }
         Understanding::whether(true, prose::sentence(&places(&fitting)), fitting)
+    }
+
+    /// `is there another cup`: the one in the hand, or else that which was spoken of last, and those beside it; nothing, where none is in
+    /// question.
+    fn others(&self, phrase: &Phrase) -> Option<(ObjectId, Vec<ObjectId>)> {
+        let is_another = phrase.side == Some(Side::Other) || phrase.text.split(' ').next() == Some("another");
+        if !is_another {
+            return None;
+        }
+        let side = phrase.side.filter(|side| *side != Side::Other);
+        let all =
+            self.ground().everywhere(&Phrase { side, ..phrase.clone() }, &Want::place(Intent::Find, &[], None)).ok()?;
+        let mut in_question = self.scene.robot.held.into_iter().chain(self.context.focus.recent.iter().copied());
+        let known = in_question.find(|id| all.contains(id))?;
+        Some((known, all.into_iter().filter(|id| *id != known).collect()))
     }
 
     /// Whether a thing is in all the states that it was said to be in. What is big is a matter of taste.
@@ -137,10 +175,43 @@ impl Answerer<'_> {
         if there.is_empty() {
             return Understanding::whether(false, format!("I have seen nothing {place} yet."), Vec::new());
         }
-        let listed = self.listed(&there);
+        let listed = contents::of_room(self.catalog, self.scene, &there, self.told);
         let verb = contents::verb(there.len(), &listed);
         let text = format!("{} there {verb} {listed}.", prose::sentence(&place).trim_end_matches('.'));
         Understanding::whether(true, text, Vec::new())
+    }
+
+    /// What it can pick up in this room, or in the room or at the place that was named.
+    pub(crate) fn carried(&self, about: Option<&Phrase>, question: &Question) -> Understanding {
+        let here = self.scene.robot.room;
+        let room = self.room_in(&question.rest).unwrap_or(here);
+        let want = Want::place(Intent::Find, &[Property::Receptacle], None);
+        let is_place = |id: &ObjectId| {
+            self.scene.object(*id).is_some_and(|object| self.catalog.class(object.class).has(Property::Receptacle))
+        };
+        let named = about.filter(|phrase| !phrase.namings.is_empty() || phrase.pronoun == Some(Pronoun::Place));
+        let at = named.and_then(|phrase| self.ground().one(phrase, &want).ok()).filter(is_place);
+        let is_there = |object: &&KnownObject| {
+            let is_carried = self.catalog.class(object.class).has(Property::Pickupable);
+            is_carried
+                && self.scene.robot.held != Some(object.id)
+                && match at {
+                    Some(place) => self.scene.ancestors(object.id).any(|outer| outer.id == place),
+                    None => object.room == room,
+                }
+        };
+        let there: Vec<&KnownObject> = self.scene.objects.iter().filter(is_there).collect();
+        let place = match at {
+            Some(id) => format!("{} {}", describe::preposition(self.catalog, self.scene, id), self.short(id)),
+            None if room == here => "here".to_owned(),
+            None => format!("in the {}", room.name_in(self.catalog)),
+        };
+        if there.is_empty() {
+            let text = format!("I know of nothing {place} that I could pick up.");
+            return Understanding::whether(false, text, Vec::new());
+        }
+        let text = prose::sentence(&format!("{place} I can pick up {}", self.listed(&there)));
+        Understanding::whether(true, text, there.iter().map(|object| object.id).collect())
     }
 
     /// Whether a question is about the floor, and not about a floor lamp.
@@ -160,8 +231,7 @@ impl Answerer<'_> {
         let place = if room == here { "here".to_owned() } else { format!("in the {}", room.name_in(self.catalog)) };
         let lies = |object: &&KnownObject| {
             let is_carried = self.catalog.class(object.class).has(Property::Pickupable);
-            let is_held = self.scene.robot.held == Some(object.id);
-            is_carried && !is_held && object.parent.is_none() && object.room == room
+            is_carried && self.scene.is_on_floor(object) && object.room == room
         };
         let there: Vec<&KnownObject> = self.scene.objects.iter().filter(lies).collect();
         let ids = there.iter().map(|object| object.id).collect();

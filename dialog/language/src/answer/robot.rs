@@ -12,6 +12,8 @@ use crate::{
     words::{intent::Intent, prose},
 };
 
+/// What it does who goes where somebody goes, while they stand still, too.
+const FOLLOWING: &str = "following you";
 /// How it begins to repeat what it said.
 const SAID: &str = "I said: \"";
 
@@ -52,7 +54,7 @@ impl Answerer<'_> {
         })
     }
 
-    /// What it is doing: what it looks for, the step that it is at, or what it waits for.
+    /// What it is doing: what it looks for, the step that it is at, what it waits for, or whom it follows.
     fn under_way(&self) -> Option<String> {
         let context = self.context;
         let target = context.search.as_ref().and_then(|search| search.target.as_ref());
@@ -65,7 +67,8 @@ impl Answerer<'_> {
                 Until::So(_) => format!("waiting until {}", until.in_words()),
             })
         };
-        sought.or_else(step).or_else(waits)
+        let follows = || (context.follows || context.followed).then(|| FOLLOWING.to_owned());
+        sought.or_else(step).or_else(waits).or_else(follows)
     }
 
     /// Whether it has done what it was told last.
@@ -135,7 +138,8 @@ impl Answerer<'_> {
                 says => format!("I did not finish {says}: {cause}."),
             });
         }
-        if let Some(refused) = &self.context.refused {
+        let is_about_it = |why: &&String| is_denied || object.is_some_and(|id| why.contains(&self.short(id)));
+        if let Some(refused) = self.context.refused.as_ref().or(self.context.left_out.as_ref().filter(is_about_it)) {
             return Understanding::answer(refused);
         }
         if let Some(not) = self.not_asked_for(object, &question.rest) {
@@ -242,9 +246,20 @@ impl Answerer<'_> {
         Some(Understanding::about(text, vec![chosen]))
     }
 
-    /// Who is with the robot: it knows of nobody but who speaks to it.
-    pub(crate) fn people(&self) -> Understanding {
-        match self.scene.person.filter(|person| person.room == self.scene.robot.room) {
+    /// Who is with the robot, or in the room that was named: it knows of nobody but who speaks to it, and of who is in another room it cannot
+    /// tell.
+    pub(crate) fn people(&self, room: Option<RoomId>) -> Understanding {
+        let here = self.scene.robot.room;
+        if let Some(room) = room.filter(|room| *room != here) {
+            let (there, name) = (room.name_in(self.catalog), here.name_in(self.catalog));
+            return match self.scene.person.filter(|person| person.room == room) {
+                Some(_) => Understanding::whether(true, format!("You are in the {there}."), Vec::new()),
+                None => Understanding::answer(format!(
+                    "I cannot see into the {there} from here: I am in the {name}. Tell me to go there, and I will look."
+                )),
+            };
+        }
+        match self.scene.person.filter(|person| person.room == here) {
             Some(_) => Understanding::whether(true, "You are here with me. I see nobody else.", Vec::new()),
             None => Understanding::whether(false, "I see nobody here.", Vec::new()),
         }

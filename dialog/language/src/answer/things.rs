@@ -93,12 +93,16 @@ impl Answerer<'_> {
     pub(crate) fn trouble(&self, id: ObjectId) -> Understanding {
         let Some(object) = self.scene.object(id) else { return self.hint() };
         let failed = self.context.failed.as_ref().filter(|failure| failure.step.object() == Some(id));
-        let text = match (self.facts().trouble(object), failed) {
-            (Some(wrong), _) => wrong,
-            (None, Some(failure)) => {
+        // `what is the problem with the paper`, of who has just refused to do something with it.
+        let the = self.short(id);
+        let refused = self.context.refused.as_ref().filter(|why| says_name(why, &the));
+        let text = match (self.facts().trouble(object), failed, refused) {
+            (Some(wrong), _, _) => wrong,
+            (None, Some(failure), _) => {
                 format!("I did not finish {}: {}", failure.step.says, report::cause(failure.status))
             }
-            (None, None) => format!("nothing that I can see: {}", self.facts().description(object)),
+            (None, None, Some(why)) => why.clone(),
+            (None, None, None) => format!("nothing that I can see: {}", self.facts().description(object)),
         };
         Understanding::about(prose::sentence(&text), vec![id])
     }
@@ -224,4 +228,12 @@ impl Answerer<'_> {
         };
         Understanding::whether(!found.is_empty(), text, found)
     }
+}
+
+/// Whether a sentence speaks of a thing by this name, and not by a longer one that begins so.
+fn says_name(text: &str, name: &str) -> bool {
+    let ends = |(at, found): (usize, &str)| {
+        text[at + found.len()..].chars().next().is_none_or(|next| !next.is_alphanumeric() && next != '-')
+    };
+    text.match_indices(name).any(ends)
 }

@@ -8,11 +8,13 @@ use crate::{
     words::{intent::Intent, prose},
 };
 
-/// How many deeds are remembered.
-const MEMORY: usize = 40;
+/// How many deeds are remembered: those of a long session.
+const MEMORY: usize = 120;
 /// How many deeds an answer tells, and one about all that was done.
 const TOLD: usize = 5;
-const ALL_TOLD: usize = 10;
+const ALL_TOLD: usize = 8;
+/// The same where only what mattered of all of them is told.
+const MATTERING_TOLD: usize = 14;
 /// How many of earlier requests are told behind those for the last one.
 const EARLIER: usize = 4;
 
@@ -66,6 +68,9 @@ const PAST: [(&str, &str); 30] = [
     ("cleaning", "cleaned"),
 ];
 
+/// What steps say by which things are taken in the hand.
+const TAKING: [&str; 2] = ["picking up ", "taking "];
+
 impl Deed {
     /// What was done: `opened the fridge`.
     pub(crate) fn in_words(&self) -> String {
@@ -101,14 +106,14 @@ impl Deeds {
     /// nothing, where it did nothing yet.
     pub(crate) fn told(&self) -> Option<String> {
         let told = self.told_of_last()?;
-        let before = listed(main_deeds(self.by_request().0), EARLIER);
+        let before = self.listed(main_deeds(self.by_request().0), EARLIER);
         Some(if before.is_empty() { told } else { format!("{told}. Before that I {before}") })
     }
 
     /// The same without what it did before.
     pub(crate) fn told_of_last(&self) -> Option<String> {
         let (_, of_last) = self.by_request();
-        (!of_last.is_empty()).then(|| format!("I {}", listed(of_last.iter(), TOLD)))
+        (!of_last.is_empty()).then(|| format!("I {}", self.listed(of_last.iter(), TOLD)))
     }
 
     /// What it did for earlier requests, and for the last one.
@@ -137,11 +142,76 @@ impl Deeds {
         if goals.is_empty() { String::new() } else { format!(". The mission wanted it: {}", goals.join("; ")) }
     }
 
-    /// What it did for all requests, in words: the last that it changed for each, or else the last that it did.
+    /// All that it did, in words and in the order in which it was done; of much, where things went and what was changed for good, or else
+    /// the last that was changed for each request.
     pub(crate) fn all_told(&self) -> Option<String> {
-        let start = if main_deeds(&self.0).count() > ALL_TOLD { "Of late" } else { "So far" };
-        let told = listed(main_deeds(&self.0), ALL_TOLD);
-        (!told.is_empty()).then(|| format!("{start} I {told}"))
+        if self.0.len() <= ALL_TOLD {
+            let told = self.listed(self.0.iter(), ALL_TOLD);
+            return (!told.is_empty()).then(|| format!("So far I {told}"));
+        }
+        let mut told: Vec<&Deed> = self.0.iter().filter(|deed| self.matters(deed)).collect();
+        if told.is_empty() || told.len() > MATTERING_TOLD {
+            told = main_deeds(&self.0).collect();
+        }
+        let start = if told.len() > MATTERING_TOLD { "Of late" } else { "So far" };
+        Some(format!("{start} I {}", self.listed(told.into_iter(), MATTERING_TOLD)))
+    }
+
+    /// Whether a deed left something otherwise than it was: what is taken to be put down, and what is opened or switched to be closed or
+    /// switched back for the same request, does not.
+    fn matters(&self, deed: &Deed) -> bool {
+        let at = self.0.iter().position(|other| std::ptr::eq(other, deed)).unwrap_or_default();
+        let of_request = |other: &&Deed| other.reason == deed.reason;
+        let after = &self.0[(at + 1).min(self.0.len())..];
+        let undoes = |other: &Deed| is_undone_by(&deed.step.action, &other.step.action);
+        match deed.step.action {
+            Action::PickUp { .. } => {
+                held_after(&self.0) == self.done_to(deed) && after.iter().all(|one| !is_taking(one))
+            }
+            Action::Interact { verb: Verb::Open | Verb::Close | Verb::Toggle, .. } => {
+                let mut before = self.0[..at].iter().rev().take_while(of_request);
+                !after.iter().take_while(of_request).any(undoes) && !before.any(undoes)
+            }
+            Action::Interact { verb: Verb::Examine | Verb::Scan, .. } => false,
+            // Where it went is told where that was asked for, and not on the way to something else.
+            Action::GoTo { target: GoToTarget::Room(_) } => after.first().is_none_or(|next| next.reason != deed.reason),
+            _ => deed.step.changes(),
+        }
+    }
+
+    /// What deeds came to, the last few, in words.
+    fn listed<'d>(&self, deeds: impl Iterator<Item = &'d Deed>, most: usize) -> String {
+        let mut deeds: Vec<&Deed> = deeds.collect();
+        deeds.dedup_by(|one, other| one.step.says == other.step.says);
+        deeds.drain(..deeds.len().saturating_sub(most));
+        let mut handled = None;
+        let said: Vec<String> = deeds.into_iter().map(|deed| self.told_after(deed, &mut handled)).collect();
+        prose::list(&said, "and")
+    }
+
+    /// What was done, in words that name what was in the hand, unless the deed told before it that was done by hand was done to that:
+    /// `washed it in the sink`, after `picked up the plate`.
+    fn told_after(&self, deed: &Deed, handled: &mut Option<ObjectId>) -> String {
+        let told = deed.in_words();
+        let in_hand = match deed.step.action {
+            Action::PickUp { .. }
+            | Action::Place { .. }
+            | Action::Interact { verb: Verb::Pour | Verb::Throw | Verb::Fill | Verb::Clean, .. } => self.done_to(deed),
+            _ => return told,
+        };
+        let is_known = in_hand.is_some() && *handled == in_hand;
+        *handled = in_hand;
+        if is_known {
+            return told;
+        }
+        let name = in_hand.and_then(|id| self.name_of(id)).unwrap_or("what I held");
+        told.replacen(" it ", &format!(" {name} "), 1)
+    }
+
+    /// What a thing was called when it was taken in the hand last.
+    fn name_of(&self, id: ObjectId) -> Option<&str> {
+        let taken = self.0.iter().rfind(|deed| deed.step.action == Action::PickUp { object: id })?;
+        TAKING.iter().find_map(|taking| taken.step.says.strip_prefix(*taking))
     }
 
     /// The last deed that changed this thing, or took it or put it away.
@@ -161,7 +231,7 @@ impl Deeds {
         let takes_it = |deed: &Deed| deed.step.action == Action::PickUp { object: id };
         let is_held = self.held_before(&self.0[first]) == Some(id);
         let taken = self.0[..first].iter().rposition(takes_it).filter(|_| is_held);
-        Some(format!("I {}", listed(self.0[taken.unwrap_or(first)..=last].iter(), TOLD)))
+        Some(format!("I {}", self.listed(self.0[taken.unwrap_or(first)..=last].iter(), TOLD)))
     }
 
     /// Whether a deed was done to this thing, or with it in the hand.
@@ -258,15 +328,6 @@ fn past(says: &str) -> String {
     format!("{done} {rest}").trim_end().to_owned()
 }
 
-/// What deeds came to, the last few, in words.
-fn listed<'d>(deeds: impl Iterator<Item = &'d Deed>, most: usize) -> String {
-    let mut said: Vec<String> = deeds.map(Deed::in_words).collect();
-    said.dedup();
-    let left_out = said.len().saturating_sub(most);
-    said.drain(..left_out);
-    prose::list(&said, "and")
-}
-
 /// What it changed last for each request, or else did last.
 fn main_deeds(deeds: &[Deed]) -> impl Iterator<Item = &Deed> {
     let of_requests = deeds.chunk_by(|one, next| one.reason == next.reason);
@@ -296,6 +357,21 @@ fn is_of(action: &Action, intent: Intent) -> bool {
         Intent::Toggle | Intent::TurnOn | Intent::TurnOff | Intent::Use => *verb == Verb::Toggle,
         _ => false,
     }
+}
+
+const fn is_taking(deed: &Deed) -> bool {
+    matches!(deed.step.action, Action::PickUp { .. })
+}
+
+/// Whether one of two actions takes back the other: a thing is opened and closed, or switched twice.
+fn is_undone_by(one: &Action, other: &Action) -> bool {
+    let (Action::Interact { verb: done, object }, Action::Interact { verb: undone, object: same }) = (one, other)
+    else {
+        return false;
+    };
+    let is_pair =
+        matches!((done, undone), (Verb::Open, Verb::Close) | (Verb::Close, Verb::Open) | (Verb::Toggle, Verb::Toggle));
+    is_pair && object == same
 }
 
 /// What is in the hand after deeds.
@@ -342,9 +418,47 @@ mod tests {
     }
 
     #[test]
+    fn all_that_was_done_is_told_in_its_order_and_by_name() {
+        let (tap, tumbler, table, blanket) = (ObjectId(1), ObjectId(2), ObjectId(3), ObjectId(4));
+        let toggle = Action::Interact { verb: Verb::Toggle, object: tap };
+        let mut deeds = Deeds::default();
+        deeds.add(&step(Action::PickUp { object: tumbler }, "picking up the tumbler"), "fill the tumbler");
+        deeds.add(&step(toggle, "turning on the tap"), "fill the tumbler");
+        let fill = Action::Interact { verb: Verb::Fill, object: tap };
+        deeds.add(&step(fill, "filling it at the tap"), "fill the tumbler");
+        let few = "So far I picked up the tumbler, turned on the tap and filled it at the tap";
+        assert_eq!(deeds.all_told().as_deref(), Some(few));
+        deeds.add(&step(toggle, "turning off the tap"), "fill the tumbler");
+        deeds.add(&step(Action::Place { receptacle: table }, "putting the tumbler on the table"), "put it down");
+        deeds.add(&step(Action::PickUp { object: blanket }, "picking up the blanket"), "fetch the blanket");
+        deeds.add(&step(Action::Place { receptacle: table }, "putting the blanket on the table"), "fetch the blanket");
+        let open = Action::Interact { verb: Verb::Open, object: ObjectId(5) };
+        deeds.add(&step(open, "opening the door"), "open the door");
+        deeds.add(&step(Action::PickUp { object: tumbler }, "picking up the tumbler"), "take the tumbler");
+        let much = "So far I filled the tumbler at the tap, put the tumbler on the table, put the blanket on the table, \
+                    opened the door and picked up the tumbler";
+        assert_eq!(deeds.all_told().as_deref(), Some(much));
+    }
+
+    #[test]
+    fn what_was_in_the_hand_is_named_where_nothing_told_before_names_it() {
+        let tap = ObjectId(1);
+        let mut deeds = Deeds::default();
+        let fill = Action::Interact { verb: Verb::Fill, object: tap };
+        deeds.add(&step(Action::PickUp { object: ObjectId(2) }, "picking up the tumbler"), "take the tumbler");
+        deeds.add(&step(fill, "filling it at the tap"), "fill it");
+        deeds.add(&step(Action::GoTo { target: GoToTarget::Object(tap) }, "going to the tap"), "go to the tap");
+        let told = "I went to the tap. Before that I picked up the tumbler and filled it at the tap";
+        assert_eq!(deeds.told().as_deref(), Some(told));
+        let mut deeds = Deeds::default();
+        deeds.add(&step(fill, "filling it at the tap"), "fill it");
+        assert_eq!(deeds.told().as_deref(), Some("I filled what I held at the tap"));
+    }
+
+    #[test]
     fn only_so_much_is_remembered() {
         let mut deeds = Deeds::default();
-        for number in 0..100 {
+        for number in 0..200 {
             deeds.add(&step(Action::PickUp { object: ObjectId(number) }, "picking it up"), "");
         }
         assert_eq!(deeds.0.len(), MEMORY);

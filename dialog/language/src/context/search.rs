@@ -10,7 +10,10 @@ use crate::{
 };
 
 /// How much likelier things are where they are spoken of than elsewhere.
-pub(crate) const HERE: f32 = 4.0;
+const HERE: f32 = 4.0;
+
+/// How much likelier things are where somebody thinks that they are.
+const HINTED: f32 = 100.0;
 
 /// A request that waits until what it names is found.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -29,6 +32,9 @@ pub(crate) struct Search {
     /// Whether somebody told it to look, where it asked.
     #[serde(default)]
     pub(crate) is_told: bool,
+    /// The rooms that it said it looks in.
+    #[serde(default)]
+    pub(crate) announced: Vec<RoomId>,
 }
 
 /// What is looked for.
@@ -43,6 +49,9 @@ pub(crate) struct Target {
     pub(crate) likely: Vec<f32>,
     /// What it was said to be in or on.
     pub(crate) at: Option<ObjectId>,
+    /// The rooms where somebody thinks that it is.
+    #[serde(default)]
+    pub(crate) hinted: Vec<RoomId>,
     /// Whether one is known already, and a look around is all that is wanted.
     pub(crate) is_hasty: bool,
     /// Where the robot was when it was asked for.
@@ -53,6 +62,8 @@ pub(crate) struct Target {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) enum Spot {
     Here([f32; 2]),
+    /// All around with a lowered head, for what lies low.
+    Low([f32; 2]),
     Viewpoint(RoomId, u8),
     Thing(ObjectId),
 }
@@ -61,13 +72,16 @@ impl Search {
     /// Whether it is to do the same with the same in the end, wherever it begins to look: a pronoun may stand for what the other one names.
     pub(crate) fn comes_to(&self, other: &Self) -> bool {
         let (own, others) = (self.ends(), other.ends());
-        let is_alike = |(one, other): (&&Clause, &&Clause)| {
-            let (one_named, other_named) = (slot::named(one), slot::named(other));
-            one.intent == other.intent
-                && one_named.len() == other_named.len()
-                && one_named.iter().zip(&other_named).all(|(one, other)| may_mean_the_same(one, other))
+        own.len() == others.len() && own.iter().zip(&others).all(|(one, other)| are_alike(one, other))
+    }
+
+    /// Whether it goes on where another one ends.
+    pub(crate) fn goes_on_from(&self, other: &Self) -> bool {
+        let asked = |search: &Self| -> Vec<Clause> {
+            search.clauses.iter().filter(|clause| clause.intent != Intent::Mention).cloned().collect()
         };
-        own.len() == others.len() && own.iter().zip(&others).all(is_alike)
+        let (own, others) = (asked(self), asked(other));
+        own.len() > others.len() && own.iter().zip(&others).all(|(one, other)| are_alike(one, other))
     }
 
     /// What it is for, without what only brings the robot there and what is only spoken of, if there is more to it.
@@ -106,6 +120,7 @@ impl Search {
             to_close: None,
             legs: 0,
             is_told: false,
+            announced: Vec::new(),
         }
     }
 
@@ -157,10 +172,18 @@ impl Search {
             self.tried.clear();
             self.target = Some(target);
         } else if let Some(before) = &mut self.target {
-            before.at = target.at;
+            (before.at, before.hinted) = (target.at, target.hinted);
         }
         is_new
     }
+}
+
+/// Whether two clauses ask for the same.
+fn are_alike(one: &Clause, other: &Clause) -> bool {
+    let (one_named, other_named) = (slot::named(one), slot::named(other));
+    one.intent == other.intent
+        && one_named.len() == other_named.len()
+        && one_named.iter().zip(&other_named).all(|(one, other)| may_mean_the_same(one, other))
 }
 
 /// Whether two phrases may mean the same: one is a pronoun, or both name things of one class in the same color.
@@ -174,9 +197,18 @@ fn may_mean_the_same(one: &Phrase, other: &Phrase) -> bool {
 
 impl Target {
     pub(crate) fn chance(&self, room: RoomId, catalog: &Catalog) -> f32 {
-        let here = if room == self.from { HERE } else { 1.0 };
         let index = catalog.room_index(room).map(usize::from);
-        index.and_then(|index| self.likely.get(index)).map_or(0.0, |likely| likely * here)
+        let usually = index.and_then(|index| self.likely.get(index)).copied().unwrap_or_default();
+        // Who thinks that it is somewhere knows more than where such things usually are.
+        let most = || self.likely.iter().copied().fold(0.0, f32::max);
+        let likely = if self.hinted.contains(&room) { most() } else { usually };
+        likely * self.favour(room)
+    }
+
+    /// How much likelier it is in this room by what was said, and where.
+    pub(crate) fn favour(&self, room: RoomId) -> f32 {
+        let here = if room == self.from { HERE } else { 1.0 };
+        if self.hinted.contains(&room) { here * HINTED } else { here }
     }
 
     pub(crate) fn likely_in(&mut self, room: RoomId, catalog: &Catalog) -> Option<&mut f32> {

@@ -12,7 +12,7 @@ use crate::{
     understanding::Asking,
     words::{
         intent::Intent,
-        lexicon::{Naming, Pronoun, Side},
+        lexicon::{Naming, Pronoun, Side, StateWord},
     },
 };
 
@@ -73,11 +73,17 @@ impl<'a> Ground<'a> {
             return Err(Miss::Mismatch(base.iter().map(|object| object.id).collect()));
         }
         for state in &phrase.states {
-            ground::keep_if_any(&mut left, |object| ground::has_state(object, *state));
+            ground::keep_if_any(&mut left, |object| self.is_in_state(object, *state));
         }
         self.keep_nearest(phrase, &mut left);
         self.keep_at_side(phrase, &mut left);
         self.keep_at_side(phrase, &mut base);
+        // Who is right in where they think that it is means that one.
+        let is_hinted = |object: &KnownObject| phrase.hints.iter().any(|hint| self.is_as_said(hint, object));
+        if left.iter().any(|object| is_hinted(object)) {
+            left.retain(|object| is_hinted(object));
+            base.retain(|object| is_hinted(object));
+        }
         Ok(Described { base, left })
     }
 
@@ -193,6 +199,15 @@ impl<'a> Ground<'a> {
         self.is_named(phrase, object)
     }
 
+    /// Whether it is as an adjective says: what holds things is full of them, and empty without any.
+    pub(crate) fn is_in_state(&self, object: &KnownObject, state: StateWord) -> bool {
+        let holds_things = self.scene.contents(object.id).next().is_some();
+        match state {
+            StateWord::Filled(is_full) if holds_things => is_full,
+            state => ground::has_state(object, state),
+        }
+    }
+
     /// Whether its class, instance id or fluid is the one said; true where none is.
     pub(crate) fn is_named(&self, phrase: &Phrase, object: &KnownObject) -> bool {
         if let Some(instance) = &phrase.instance {
@@ -201,7 +216,7 @@ impl<'a> Ground<'a> {
         }
         let is_fluid = phrase.fluid.is_some_and(|fluid| fluid == object.fluid);
         let says_nothing = phrase.namings.is_empty() && phrase.fluid.is_none();
-        says_nothing || is_fluid || phrase.naming(object.class).is_some()
+        !phrase.is_floor && (says_nothing || is_fluid || phrase.naming(object.class).is_some())
     }
 
     /// Colour, room and relations: what must hold.
@@ -250,6 +265,9 @@ impl<'a> Ground<'a> {
     pub(crate) fn is_related(&self, object: &KnownObject, relation: &Relation) -> bool {
         if relation.to.pronoun == Some(Pronoun::Place) && self.focus.place.is_none() {
             return self.focus.room.is_none_or(|room| object.room == room);
+        }
+        if relation.to.is_floor {
+            return self.scene.is_on_floor(object);
         }
         let fits = |other: &KnownObject| other.id != object.id && self.is_loosely(&relation.to, other);
         match relation.kind {
@@ -316,7 +334,7 @@ impl<'a> Ground<'a> {
             !phrase.is_empty() && self.is_named(phrase, object) || phrase.is_empty() && phrase.says_something();
         is_meant
             && self.is_as_said(phrase, object)
-            && phrase.states.iter().all(|state| ground::has_state(object, *state))
+            && phrase.states.iter().all(|state| self.is_in_state(object, *state))
     }
 }
 

@@ -3,7 +3,10 @@
 use cohabit_cdf::{Action, GoToTarget, ObjectId, RoomId};
 use serde::{Deserialize, Serialize};
 
-use crate::{known::Known, read::phrase::Phrase};
+use crate::{
+    known::{Known, ON_FLOOR_M},
+    read::phrase::Phrase,
+};
 
 /// How many objects a pronoun may reach back.
 const MEMORY: usize = 8;
@@ -23,6 +26,9 @@ pub(crate) struct Focus {
     pub(crate) room: Option<RoomId>,
     /// What was taken, and from where, the latest first.
     pub(crate) origins: Vec<(ObjectId, ObjectId)>,
+    /// What was taken from the floor, and of which room, the latest first.
+    #[serde(default)]
+    pub(crate) off_floor: Vec<(ObjectId, RoomId)>,
     /// What was put somewhere last.
     pub(crate) placed: Option<ObjectId>,
     /// Where the robot stood when it last set out, m.
@@ -44,11 +50,19 @@ impl Focus {
     pub(crate) fn remember(&mut self, scene: &Known, action: &Action) {
         match *action {
             Action::PickUp { object } => {
-                if let Some(origin) = scene.object(object).and_then(|object| object.parent) {
-                    self.origins.retain(|(taken, _)| *taken != object);
-                    self.origins.insert(0, (object, origin));
-                    self.origins.truncate(MEMORY);
+                let Some(taken) = scene.object(object) else { return };
+                // What somebody else holds is on nothing either.
+                if taken.parent.is_none() && taken.position_m[2] > ON_FLOOR_M {
+                    return;
                 }
+                self.origins.retain(|(other, _)| *other != object);
+                self.off_floor.retain(|(other, _)| *other != object);
+                match taken.parent {
+                    Some(origin) => self.origins.insert(0, (object, origin)),
+                    None => self.off_floor.insert(0, (object, taken.room)),
+                }
+                self.origins.truncate(MEMORY);
+                self.off_floor.truncate(MEMORY);
             }
             Action::Place { .. } => self.placed = scene.robot.held,
             _ => {}

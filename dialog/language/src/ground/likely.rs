@@ -162,7 +162,7 @@ impl<'a> Ground<'a> {
         features.set(Feature::Name, phrase.naming(object.class).unwrap_or(1.0));
         features
             .set_if(Feature::ColorMismatch, phrase.color.as_ref().is_some_and(|color| !self.has_color(object, color)));
-        features.set_if(Feature::StateMismatch, phrase.states.iter().any(|state| !ground::has_state(object, *state)));
+        features.set_if(Feature::StateMismatch, phrase.states.iter().any(|state| !self.is_in_state(object, *state)));
         features.set_if(Feature::RoomMismatch, is_elsewhere);
         features.set(Feature::RelationMismatch, unrelated as f32);
         features.set_if(Feature::SameRoom, is_here);

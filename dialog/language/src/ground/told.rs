@@ -8,7 +8,7 @@ use crate::{
     read::phrase::Phrase,
     words::{
         intent::Intent,
-        lexicon::{Pronoun, Side},
+        lexicon::{Pronoun, Side, StateWord},
     },
 };
 
@@ -86,21 +86,61 @@ impl Ground<'_> {
             Side::Middle => near.get(near.len() / 2).copied(),
             Side::Nearest => near.iter().min_by(by_distance).copied(),
             Side::Farthest => near.iter().max_by(by_distance).copied(),
-            Side::Biggest | Side::Smallest => return self.by_size(left, phrase.side == Some(Side::Biggest)),
+            side @ (Side::Biggest
+            | Side::Smallest
+            | Side::Tallest
+            | Side::Longest
+            | Side::Shortest
+            | Side::Heaviest
+            | Side::Lightest) => return self.by_measure(left, side),
+            // What hangs elsewhere is neither above nor below what is here.
+            side @ (Side::Upper | Side::Lower) => return self.by_measure(&near, side),
             Side::Front | Side::Behind | Side::Other => None,
         };
         picked.map(|object| object.id)
     }
 
-    /// The biggest or the smallest, where one alone is.
-    fn by_size(&self, left: &[&KnownObject], is_biggest: bool) -> Option<ObjectId> {
-        let size = |object: &KnownObject| {
-            let volume: f32 = self.catalog.class(object.class).size_m.iter().product();
-            let larger = if object.has(StateFlag::Embiggenated) { ENLARGED } else { 1.0 };
-            if is_biggest { volume * larger } else { -volume * larger }
-        };
-        let best = left.iter().max_by(|one, other| size(one).total_cmp(&size(other)))?;
-        let is_alone = left.iter().filter(|object| size(object) >= size(best)).count() == 1;
-        is_alone.then_some(best.id)
+    /// The biggest, the tallest, the upper one and such, where one alone is.
+    fn by_measure(&self, left: &[&KnownObject], side: Side) -> Option<ObjectId> {
+        let most = left.iter().map(|object| self.measure(object, side)).fold(f32::NEG_INFINITY, f32::max);
+        let mut best = left.iter().filter(|object| self.measure(object, side) >= most);
+        let one = best.next()?;
+        best.next().is_none().then_some(one.id)
+    }
+
+    /// By what things are compared that are said to be more so than others.
+    fn measure(&self, object: &KnownObject, side: Side) -> f32 {
+        let class = self.catalog.class(object.class);
+        let larger = if object.has(StateFlag::Embiggenated) { ENLARGED } else { 1.0 };
+        let volume = || class.size_m.iter().product::<f32>() * larger;
+        let longest = || class.size_m.iter().copied().fold(0.0, f32::max) * larger.cbrt();
+        match side {
+            Side::Biggest => volume(),
+            Side::Smallest => -volume(),
+            Side::Tallest => class.size_m[2] * larger.cbrt(),
+            Side::Longest => longest(),
+            Side::Shortest => -longest(),
+            Side::Heaviest => class.mass_kg * larger,
+            Side::Lightest => -class.mass_kg * larger,
+            Side::Upper => object.position_m[2],
+            Side::Lower => -object.position_m[2],
+            _ => 0.0,
+        }
+    }
+
+    /// `the big one` of things that no machine made bigger: the bigger one.
+    pub(crate) fn compared(phrase: &Phrase, among: &[&KnownObject]) -> Phrase {
+        let says_size = |state: &StateWord| matches!(state, StateWord::Flag(StateFlag::Embiggenated, _));
+        let said = phrase.states.iter().copied().find(says_size);
+        let is_made = among.iter().any(|object| object.has(StateFlag::Embiggenated));
+        let mut phrase = phrase.clone();
+        if let Some(StateWord::Flag(_, is_big)) = said
+            && !is_made
+            && phrase.side.is_none()
+        {
+            phrase.states.retain(|state| !says_size(state));
+            phrase.side = Some(if is_big { Side::Biggest } else { Side::Smallest });
+        }
+        phrase
     }
 }

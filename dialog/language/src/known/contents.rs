@@ -11,6 +11,13 @@ use crate::{
 
 /// How many things a list names before it says `and more`.
 pub(crate) const LIST: usize = 8;
+/// Of what is in a room, how many things that stand there are named before such as can be carried, and at most how many of these before
+/// the rest of the others.
+const FIRST_OF_EACH: usize = 4;
+/// Where no more than so many kinds of things are of use in a room, the others are told, too.
+const LITTLE: usize = 3;
+/// How a list of what is in a room ends where there is more.
+const ASK_FOR_MORE: &str = "more: ask me what else";
 /// So many more are named, too, where that is all.
 const LIST_TO_END: usize = 5;
 
@@ -52,6 +59,82 @@ pub(crate) fn listed(catalog: &Catalog, scene: &Known, objects: &[&KnownObject],
     let more = (left > most).then(|| format!("{} more", left - most));
     let names: Vec<String> = named.chain(more).collect();
     if names.is_empty() { NOTHING_ELSE.to_owned() } else { prose::list(&names, "and") }
+}
+
+/// What stands in a room is of use by any of these.
+const OF_USE: [Property; 5] =
+    [Property::Receptacle, Property::Openable, Property::Toggleable, Property::Powerable, Property::Usable];
+
+/// What people ask for of what is in a room.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+enum Interest {
+    /// Furniture and machines that can be used.
+    Furniture,
+    /// What can be carried, or read.
+    Carried,
+    /// Buttons, and decoration that affords nothing.
+    Little,
+}
+
+fn interest(catalog: &Catalog, object: &KnownObject) -> Interest {
+    let class = catalog.class(object.class);
+    let is_part =
+        object.works.is_some() && ![Property::Receptacle, Property::Powerable].iter().any(|one| class.has(*one));
+    match () {
+        () if class.has(Property::Pickupable) || !object.text.is_empty() => Interest::Carried,
+        () if is_part || !OF_USE.iter().any(|one| class.has(*one)) => Interest::Little,
+        () => Interest::Furniture,
+    }
+}
+
+/// What is in a room, without the first so many that were told before: the largest of what stands there and what can be carried first, and
+/// what hardly anybody asks for once all else was told.
+pub(crate) fn of_room(catalog: &Catalog, scene: &Known, objects: &[&KnownObject], told: usize) -> String {
+    // By name: the most that people ask of one so called, how large it is, and how many there are.
+    let mut kinds: BTreeMap<String, (Interest, f32, usize)> = BTreeMap::new();
+    for object in objects {
+        let size_m = catalog.class(object.class).size_m.into_iter().fold(0.0, f32::max);
+        let of = interest(catalog, object);
+        let name = describe::bare(catalog, scene, object.id);
+        let (interest, largest_m, count) = kinds.entry(name).or_insert((of, size_m, 0));
+        (*interest, *largest_m, *count) = (of.min(*interest), size_m.max(*largest_m), *count + 1);
+    }
+    let of = |wanted: Interest| {
+        let mut found: Vec<(f32, String)> = (kinds.iter().filter(|(_, (interest, ..))| *interest == wanted))
+            .map(|(name, (_, size_m, count))| (*size_m, prose::counted(name, *count)))
+            .collect();
+        found.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        found.into_iter().map(|(_, name)| name).collect::<Vec<String>>()
+    };
+    let (mut names, mut carried, little) = (of(Interest::Furniture), of(Interest::Carried), of(Interest::Little));
+    let mut rest = names.split_off(FIRST_OF_EACH.min(names.len()));
+    let last = carried.split_off(FIRST_OF_EACH.min(carried.len()));
+    names.append(&mut carried);
+    names.append(&mut rest);
+    names.extend(last);
+    if names.len() <= LITTLE {
+        names.extend(little);
+        return page(&names, told);
+    }
+    let all_told = LIST * pages(names.len());
+    match told.checked_sub(all_told) {
+        Some(told) => page(&little, told),
+        None => page(&names, told),
+    }
+}
+
+/// In how many answers so many names are told.
+const fn pages(count: usize) -> usize {
+    if count <= LIST + LIST_TO_END { 1 } else { 1 + pages(count - LIST) }
+}
+
+/// The names of one answer, behind the first so many.
+fn page(names: &[String], told: usize) -> String {
+    let left = if told < LIST * pages(names.len()) { &names[told.min(names.len())..] } else { &[] };
+    let most = if left.len() <= LIST + LIST_TO_END { left.len() } else { LIST };
+    let more = (left.len() > most).then(|| ASK_FOR_MORE.to_owned());
+    let named: Vec<String> = left[..most].iter().cloned().chain(more).collect();
+    if named.is_empty() { NOTHING_ELSE.to_owned() } else { prose::list(&named, "and") }
 }
 
 /// `under the desk there is a golf ball`: what stands on the floor where this thing does; nothing, where nothing is known to.

@@ -19,8 +19,8 @@ pub struct FloorPlan {
     gates: Vec<([RoomId; 2], [f32; 2])>,
     pub(crate) viewpoints: Vec<Vantage>,
     pub(crate) cells: Vec<Cell>,
-    /// The instance ids of its doors.
-    doors: Vec<String>,
+    /// The instance ids of its doors, and the rooms that each joins.
+    doors: Vec<(String, [RoomId; 2])>,
 }
 
 /// A named viewpoint.
@@ -44,6 +44,8 @@ pub struct Floor {
     pub(crate) plan: Arc<FloorPlan>,
     /// By cell: from how near it was seen, m; infinite where it was not.
     pub(crate) nearest_m: Arc<Vec<f32>>,
+    /// The same of what lies low there: a look straight ahead misses what is at its feet.
+    pub(crate) nearest_low_m: Arc<Vec<f32>>,
 }
 
 impl FloorPlan {
@@ -60,7 +62,7 @@ impl FloorPlan {
             gates: gates.map(|gate| (gate.between, gate.at_m)).collect(),
             viewpoints: viewpoints.map(|v| Vantage { room: v.room, number: v.number, at_m: v.at_m }).collect(),
             cells,
-            doors: layout.openings.iter().filter_map(|opening| opening.door.clone()).collect(),
+            doors: layout.openings.iter().filter_map(|one| Some((one.door.clone()?, one.between))).collect(),
             rooms,
         }
     }
@@ -72,7 +74,17 @@ impl FloorPlan {
 
     /// Whether it shows this door.
     pub(crate) fn has_door(&self, instance: &str) -> bool {
-        self.doors.iter().any(|door| door == instance)
+        self.doors.iter().any(|(door, _)| door == instance)
+    }
+
+    /// The room on the other side of a door, seen from one of the two that it joins.
+    pub(crate) fn beyond(&self, instance: &str, room: RoomId) -> Option<RoomId> {
+        let (_, [one, other]) = self.doors.iter().find(|(door, _)| door == instance)?;
+        match room {
+            room if room == *one => Some(*other),
+            room if room == *other => Some(*one),
+            _ => None,
+        }
     }
 
     /// Whether the straight line between two places of a room stays in it.
@@ -136,7 +148,7 @@ impl Floor {
     #[must_use]
     pub fn new(plan: Arc<FloorPlan>) -> Self {
         let nearest_m = Arc::new(vec![f32::INFINITY; plan.cells.len()]);
-        Self { plan, nearest_m }
+        Self { plan, nearest_low_m: Arc::clone(&nearest_m), nearest_m }
     }
 
     /// The share of a room that was looked at from near enough for things that show up to `reach_m`.
@@ -149,6 +161,11 @@ impl Floor {
     /// Whether a cell was looked at from near enough for things that show up to `reach_m`.
     pub(crate) fn is_looked_at(&self, cell: usize, reach_m: f32) -> bool {
         self.nearest_m.get(cell).is_some_and(|nearest| *nearest <= reach_m)
+    }
+
+    /// Whether that holds of what lies low there, too.
+    pub(crate) fn is_looked_at_low(&self, cell: usize, reach_m: f32) -> bool {
+        self.nearest_low_m.get(cell).is_some_and(|nearest| *nearest <= reach_m)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
-use cohabit_cdf::{Catalog, ClassId, Layout, ObjectClass, Property, RoomId};
+use cohabit_cdf::{Catalog, ClassId, Layout, ObjectClass, Property, RoomId, catalog::Stands};
 
 /// How much another class's place says, where it affords all the same: less than the class's own.
 const LIKENESS: f32 = 0.3;
@@ -10,9 +10,13 @@ const LIKENESS: f32 = 0.3;
 const ANYWHERE: f32 = 0.02;
 /// The share of small things that are behind doors, where the plans say nothing.
 const ENCLOSED: f32 = 0.2;
+/// What reaches no higher is out of view of who stands beside it and looks straight ahead, m.
+const LOW_M: f32 = 0.6;
+/// The least share of small things that lie low, whatever the plans say: on floors, in baskets, on low shelves.
+const LOWLY: f32 = 0.25;
 
-/// An instance, its room, and what it is on or in.
-type Placed = (String, RoomId, Option<String>);
+/// An instance, its room, what it is on or in, and how high above the floor or that, m.
+type Placed = (String, RoomId, Option<String>, f32);
 
 /// What stands in the built-in plans. Read once, for all languages.
 static PLACES: LazyLock<Vec<Placed>> =
@@ -30,23 +34,26 @@ fn places_of_packs(catalog: &Catalog) -> Vec<Placed> {
 fn placed(layouts: impl Iterator<Item = Layout>) -> Vec<Placed> {
     // Mirrored plans hold the same things in the same rooms.
     let placements = layouts.filter(|layout| !layout.id.ends_with("_mirror")).flat_map(|layout| layout.placements);
-    placements.map(|placement| (placement.instance, placement.room, placement.on)).collect()
+    placements.map(|placement| (placement.instance, placement.room, placement.on, placement.at_m[2])).collect()
 }
 
-/// Counts of classes by room, and by what encloses them.
+/// Counts of classes by room, by what encloses them, and of those behind no door: of all, and of those that lie low.
 #[derive(Debug)]
 pub(crate) struct Habits {
     /// By the index of rooms.
     rooms: BTreeMap<ClassId, Vec<f32>>,
     enclosed: BTreeMap<(ClassId, ClassId), f32>,
+    open: BTreeMap<ClassId, f32>,
+    low: BTreeMap<ClassId, f32>,
 }
 
 impl Habits {
     /// Counts in the built-in plans, and in those of world packs, what the catalogue has.
     pub(crate) fn new(catalog: &Catalog) -> Self {
         let none = vec![0.0; catalog.rooms().all().len()];
-        let mut habits = Self { rooms: BTreeMap::new(), enclosed: BTreeMap::new() };
-        for (instance, room, on) in PLACES.iter().chain(&places_of_packs(catalog)) {
+        let (rooms, enclosed) = (BTreeMap::new(), BTreeMap::new());
+        let mut habits = Self { rooms, enclosed, open: BTreeMap::new(), low: BTreeMap::new() };
+        for (instance, room, on, up_m) in PLACES.iter().chain(&places_of_packs(catalog)) {
             let Some(class) = catalog.class_of_instance(instance) else { continue };
             let Some(index) = catalog.room_index(*room) else { continue };
             habits.rooms.entry(class).or_insert_with(|| none.clone())[usize::from(index)] += 1.0;
@@ -55,6 +62,12 @@ impl Habits {
                 |place: &ClassId| catalog.class(*place).receptacle.as_ref().is_some_and(|kind| kind.enclosed);
             if let Some(place) = place.filter(encloses) {
                 *habits.enclosed.entry((class, place)).or_default() += 1.0;
+                continue;
+            }
+            *habits.open.entry(class).or_default() += 1.0;
+            let foot_m = if on.is_some() { place.and_then(|place| top_m(catalog.class(place))) } else { Some(*up_m) };
+            if foot_m.is_some_and(|foot_m| foot_m + catalog.class(class).size_m[2] < LOW_M) {
+                *habits.low.entry(class).or_default() += 1.0;
             }
         }
         habits
@@ -83,6 +96,20 @@ impl Habits {
         if all <= 0.0 { ENCLOSED / 2.0 } else { (inside + ENCLOSED * ANYWHERE) / (all + ANYWHERE) }
     }
 
+    /// How likely such a thing lies low, if it is behind no door; nothing that is not carried does, for all it matters.
+    pub(crate) fn low(&self, catalog: &Catalog, classes: &[ClassId]) -> f32 {
+        let may_lie_low = |class: &ObjectClass| class.has(Property::Pickupable) && class.size_m[2] < LOW_M;
+        if !classes.iter().any(|class| may_lie_low(catalog.class(*class))) {
+            return 0.0;
+        }
+        let sum = |counts: &BTreeMap<ClassId, f32>| -> f32 {
+            counts.iter().map(|(class, count)| weight(catalog, classes, *class) * count).sum()
+        };
+        let (low, open) = (sum(&self.low), sum(&self.open));
+        let counted = if open > 0.0 { low / open } else { 0.0 };
+        LOWLY + (1.0 - LOWLY) * counted
+    }
+
     /// How often things of this class, or of its kind, are in what encloses them, by the class of that.
     pub(crate) fn kept_in(&self, catalog: &Catalog, class: ClassId) -> BTreeMap<ClassId, f32> {
         let mut kept = BTreeMap::new();
@@ -99,6 +126,12 @@ impl Habits {
         }
         kept
     }
+}
+
+/// How high above the floor the highest place for things is of what stands on it, m.
+fn top_m(class: &ObjectClass) -> Option<f32> {
+    let kind = class.receptacle.as_ref().filter(|_| class.stands == Stands::OnFloor)?;
+    kind.surfaces.iter().map(|surface| surface.center_m[2]).reduce(f32::max)
 }
 
 /// Whether two classes have a word in common that people call them by: a doll and a teddy are toys.

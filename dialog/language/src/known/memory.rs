@@ -14,7 +14,7 @@ use crate::known::{
     Known, KnownGoal, KnownObject, KnownRobot,
     floor::{Floor, FloorPlan, distance_m},
     imagine,
-    sight::{Gaze, Sight},
+    sight::{FLOOR_M, Gaze, Sight, TABLE_M},
 };
 
 /// No office holds more.
@@ -45,6 +45,7 @@ pub struct Memory {
     /// What was learnt and not handed out by [`Self::take_lessons`] yet.
     fresh: BTreeSet<ObjectId>,
     fresh_cells: BTreeSet<usize>,
+    fresh_low: BTreeSet<usize>,
 }
 
 /// What a robot has learnt since some moment: to be written down, and learnt again by the next one.
@@ -59,20 +60,22 @@ pub struct Lessons {
     /// Cells of floor, and from how near they were seen, cm.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     cells: Vec<(u32, u32)>,
+    /// The same of what lies low there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    low: Vec<(u32, u32)>,
 }
 
 impl Lessons {
     /// Takes in what was learnt later.
     pub fn add(&mut self, later: Self) {
-        let Self { things, gone, cells } = later;
+        let Self { things, gone, cells, low } = later;
         let is_new = |id: &ObjectId| things.iter().any(|thing| thing.id == *id) || gone.contains(id);
         self.things.retain(|thing| !is_new(&thing.id));
         self.gone.retain(|id| !is_new(id));
         self.things.extend(things);
         self.gone.extend(gone);
-        let is_nearer = |cell: u32| cells.iter().any(|(nearer, _)| *nearer == cell);
-        self.cells.retain(|(cell, _)| !is_nearer(*cell));
-        self.cells.extend(cells);
+        add_cells(&mut self.cells, cells);
+        add_cells(&mut self.low, low);
     }
 }
 
@@ -116,6 +119,7 @@ impl Memory {
             floor: Floor::new(plan),
             fresh: BTreeSet::new(),
             fresh_cells: BTreeSet::new(),
+            fresh_low: BTreeSet::new(),
         }
     }
 
@@ -211,15 +215,15 @@ impl Memory {
     /// What was learnt since this was last asked.
     pub fn take_lessons(&mut self) -> Option<Lessons> {
         let (fresh, cells) = (std::mem::take(&mut self.fresh), std::mem::take(&mut self.fresh_cells));
-        if fresh.is_empty() && cells.is_empty() {
+        let low = std::mem::take(&mut self.fresh_low);
+        if fresh.is_empty() && cells.is_empty() && low.is_empty() {
             return None;
         }
-        let centimeters = |cell: usize| (self.floor.nearest_m[cell] * 100.0) as u32;
-        let number = |cell: usize| u32::try_from(cell).unwrap_or(u32::MAX);
         Some(Lessons {
             things: fresh.iter().filter_map(|id| self.things.get(id)).cloned().collect(),
             gone: fresh.iter().filter(|id| !self.things.contains_key(id)).copied().collect(),
-            cells: cells.into_iter().map(|cell| (number(cell), centimeters(cell))).collect(),
+            cells: in_centimeters(&cells, &self.floor.nearest_m),
+            low: in_centimeters(&low, &self.floor.nearest_low_m),
         })
     }
 
@@ -231,14 +235,11 @@ impl Memory {
         for id in &lessons.gone {
             self.things.remove(id);
         }
-        let nearest = Arc::make_mut(&mut self.floor.nearest_m);
-        for (cell, centimeters) in &lessons.cells {
-            if let Some(nearest) = nearest.get_mut(*cell as usize) {
-                *nearest = nearest.min(*centimeters as f32 / 100.0);
-            }
-        }
+        study_cells(Arc::make_mut(&mut self.floor.nearest_m).as_mut_slice(), &lessons.cells);
+        study_cells(Arc::make_mut(&mut self.floor.nearest_low_m).as_mut_slice(), &lessons.low);
         self.fresh.clear();
         self.fresh_cells.clear();
+        self.fresh_low.clear();
     }
 
     fn learn(&mut self, object: &KnownObject, visible: bool) {
@@ -285,13 +286,40 @@ impl Memory {
     }
 
     fn look_at_floor(&mut self, sight: &Sight<'_>) {
-        let nearest = Arc::make_mut(&mut self.floor.nearest_m);
-        for (cell, distance_m) in sight.floor() {
-            // To a tenth of a metre: what was seen a little nearer is no news.
-            if distance_m + 0.1 < nearest[cell] {
-                nearest[cell] = distance_m;
-                self.fresh_cells.insert(cell);
-            }
+        let (nearest, nearest_low) = (&mut self.floor.nearest_m, &mut self.floor.nearest_low_m);
+        note_nearer(Arc::make_mut(nearest).as_mut_slice(), sight.floor(TABLE_M), &mut self.fresh_cells);
+        note_nearer(Arc::make_mut(nearest_low).as_mut_slice(), sight.floor(FLOOR_M), &mut self.fresh_low);
+    }
+}
+
+/// Takes in from how near cells are seen now.
+fn note_nearer(nearest_m: &mut [f32], seen: impl Iterator<Item = (usize, f32)>, fresh: &mut BTreeSet<usize>) {
+    for (cell, distance_m) in seen {
+        // To a tenth of a metre: what was seen a little nearer is no news.
+        if distance_m + 0.1 < nearest_m[cell] {
+            nearest_m[cell] = distance_m;
+            fresh.insert(cell);
+        }
+    }
+}
+
+/// These cells, and from how near they were seen, cm.
+fn in_centimeters(cells: &BTreeSet<usize>, nearest_m: &[f32]) -> Vec<(u32, u32)> {
+    let number = |cell: usize| u32::try_from(cell).unwrap_or(u32::MAX);
+    cells.iter().map(|cell| (number(*cell), (nearest_m[*cell] * 100.0) as u32)).collect()
+}
+
+/// Takes in what was learnt of cells later.
+fn add_cells(cells: &mut Vec<(u32, u32)>, later: Vec<(u32, u32)>) {
+    cells.retain(|(cell, _)| !later.iter().any(|(nearer, _)| nearer == cell));
+    cells.extend(later);
+}
+
+/// Learns again from how near cells were seen.
+fn study_cells(nearest_m: &mut [f32], cells: &[(u32, u32)]) {
+    for (cell, centimeters) in cells {
+        if let Some(nearest) = nearest_m.get_mut(*cell as usize) {
+            *nearest = nearest.min(*centimeters as f32 / 100.0);
         }
     }
 }

@@ -22,8 +22,11 @@ const BOARD_M: f32 = 0.04;
 const SMALL_M: f32 = 0.25;
 /// The share of its box that a thing on a table fills: computers are mostly air.
 const FILLED: f32 = 0.7;
-/// The height at which one looks at a piece of floor: that of tables, m.
-const TABLE_M: f32 = 0.8;
+/// The heights at which one looks at a piece of floor, m: that of tables, and that of what lies on the floor.
+pub(crate) const TABLE_M: f32 = 0.8;
+pub(crate) const FLOOR_M: f32 = 0.1;
+/// From how far the floor is in view of a robot that looks straight ahead: its eye is 1.3 m up, m.
+pub(crate) const FLOOR_FROM_M: f32 = 2.1;
 
 /// Where an eye is, and where it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,12 +118,12 @@ impl<'a> Sight<'a> {
         })
     }
 
-    /// From how near the places of the floor are seen that are seen, by cell, m.
-    pub(crate) fn floor(&self) -> impl Iterator<Item = (usize, f32)> {
+    /// From how near the places of the floor are seen that are seen at a height, by cell, m.
+    pub(crate) fn floor(&self, height_m: f32) -> impl Iterator<Item = (usize, f32)> {
         let eye = self.gaze.eye_m;
         let cells = self.plan.cells.iter().enumerate().filter(|(_, cell)| cell.room == self.gaze.room);
         cells.filter_map(move |(index, cell)| {
-            let point = [cell.at_m[0], cell.at_m[1], TABLE_M];
+            let point = [cell.at_m[0], cell.at_m[1], height_m];
             let is_seen = self.gaze.takes_in(point)
                 && self.plan.is_straight(cell.room, [eye[0], eye[1]], cell.at_m)
                 && !self.blocks.iter().any(|block| !block.holds(point) && block.hides(eye, point));

@@ -1,9 +1,9 @@
-//! Plans with the hand: picking up, putting somewhere, pouring, throwing, breaking.
+//! Plans with the hand: picking up, putting somewhere, throwing.
 
 use cohabit_cdf::{Action, ClassId, ObjectClass, ObjectId, Property, RoomId, Verb};
 
 use crate::{
-    ground::want::{Miss, Want},
+    ground::want::Want,
     known::KnownObject,
     plan::{
         Fault, Planner,
@@ -16,12 +16,15 @@ use crate::{
     understanding::Step,
     words::{
         intent::Intent,
-        lexicon::{Naming, Preposition, Pronoun},
+        lexicon::{Naming, Preposition},
     },
 };
 
 /// The least area that is a place to put things down, m².
 const TABLE_M2: f32 = 0.15;
+
+/// What is said where something is to be put on the floor.
+const NOT_ON_FLOOR: &str = "I cannot put things on the floor, only on or into something.";
 
 /// What can take an object: a receptacle, or something to pour into.
 pub(crate) const TAKES: &[Property] = &[Property::Receptacle, Property::Fillable];
@@ -29,7 +32,7 @@ pub(crate) const TAKES: &[Property] = &[Property::Receptacle, Property::Fillable
 impl Planner<'_> {
     pub(crate) fn add_pick_up(&mut self, settled: &Settled) -> Result<(), Fault> {
         if self.is_several(settled) {
-            return Err(self.one_at_a_time(settled)?);
+            return self.one_at_a_time(settled);
         }
         for object in self.find_objects(settled, &Want::object(settled.intent))? {
             // `I want some light`
@@ -66,15 +69,23 @@ impl Planner<'_> {
         same.into_iter().map(|class| Naming { class, weight: 1.0 }).collect()
     }
 
-    /// There is but one hand: says so, and offers the first of them.
-    fn one_at_a_time(&mut self, settled: &Settled) -> Result<Fault, Fault> {
+    /// There is but one hand: of several that can be carried it says so, and offers the first of them.
+    fn one_at_a_time(&mut self, settled: &Settled) -> Result<(), Fault> {
         let found = self.find_objects(settled, &Want::object(settled.intent))?;
-        let Some(first) = found.into_iter().find(|id| self.scene.robot.held != Some(*id)) else {
-            return Ok(Fault::Cannot("I can only carry one thing at a time.".to_owned()));
+        let named = found.len();
+        let carried = self.carried(found)?;
+        if let [only] = carried[..]
+            && named > 1
+        {
+            return self.pick_up(only, self.may_put_down);
+        }
+        let Some(first) = carried.into_iter().find(|id| self.scene.robot.held != Some(*id)) else {
+            return Err(Fault::Cannot("I can only carry one thing at a time.".to_owned()));
         };
-        let text = format!("I can only carry one thing at a time. Shall I begin with {}?", self.the(first));
+        let offer = format!("I can only carry one thing at a time. Shall I begin with {}?", self.the(first));
+        let left_out = self.why_left_out(Vec::new()).map(|why| format!("{why} ")).unwrap_or_default();
         self.pick_up(first, true)?;
-        Ok(Fault::Offer { text, steps: std::mem::take(&mut self.steps) })
+        Err(Fault::Offer { text: format!("{left_out}{offer}"), steps: std::mem::take(&mut self.steps) })
     }
 
     /// Has the object in the hand; what is held is put down first if it may be.
@@ -88,7 +99,7 @@ impl Planner<'_> {
                 return Ok(());
             }
             _ if !self.has(object, Property::Pickupable) => {
-                return Err(Fault::Cannot(format!("I cannot pick up {}.", self.the(object))));
+                return Err(self.not_carried(&[object]));
             }
             Some(held) if !may_put_down => return Err(Fault::HandFull { held, wanted: object }),
             Some(held) => {
@@ -226,7 +237,8 @@ impl Planner<'_> {
     /// Several things one after the other, each carried to the same place.
     fn add_places(&mut self, settled: &Settled) -> Result<(), Fault> {
         let want = Want { held_first: false, ..Want::object(settled.intent) };
-        let objects = self.find_objects(settled, &want)?;
+        let found = self.find_objects(settled, &want)?;
+        let objects = self.carried(found)?;
         // `put them back`: each where it was taken from.
         if settled.is_back && settled.goal.is_none() {
             return objects.into_iter().try_for_each(|object| self.put_back(object));
@@ -273,7 +285,12 @@ impl Planner<'_> {
     }
 
     fn place_at(&mut self, object: ObjectId, goal: &Goal, settled: &Settled) -> Result<(), Fault> {
+        // Where it would go is not worth looking for.
+        if !self.has(object, Property::Pickupable) {
+            return Err(self.not_carried(&[object]));
+        }
         match &goal.place {
+            Place::Object(phrase) if phrase.is_floor => self.offer_surface(object),
             Place::Object(phrase) => {
                 let target = self.find_target(phrase, goal, object, settled)?;
                 let is_there = self.scene.object(object).is_some_and(|known| known.parent == Some(target));
@@ -306,6 +323,23 @@ impl Planner<'_> {
                 self.put_down(None)
             }
         }
+    }
+
+    /// `put it on the floor`: no action does that, so the nearest surface is offered instead.
+    fn offer_surface(&mut self, object: ObjectId) -> Result<(), Fault> {
+        if self.scene.object(object).is_some_and(|known| self.scene.is_on_floor(known)) {
+            self.notes.push(format!("{} is on the floor already", self.the(object)));
+            return Ok(());
+        }
+        let stands_on = self.scene.object(object).and_then(|known| known.parent);
+        let Some(surface) = self.surface(None, stands_on) else {
+            return Err(Fault::Cannot(NOT_ON_FLOOR.to_owned()));
+        };
+        let (the, place) = (self.the(object), self.the(surface));
+        let offer = format!("{NOT_ON_FLOOR} Shall I put {the} {} {place}?", self.preposition(surface));
+        self.hold(object)?;
+        self.place_on(surface);
+        Err(Fault::Offer { text: offer, steps: std::mem::take(&mut self.steps) })
     }
 
     fn bring_to_room(&mut self, object: ObjectId, room: RoomId, intent: Intent) -> Result<(), Fault> {
@@ -371,8 +405,8 @@ impl Planner<'_> {
         }
         if settled.goal.is_none() && self.is_several(settled) {
             let want = Want { held_first: false, ..Want::object(settled.intent) };
-            let objects = self.find_objects(settled, &want)?;
-            return objects.into_iter().try_for_each(|object| self.throw_away(object));
+            let found = self.find_objects(settled, &want)?;
+            return self.carried(found)?.into_iter().try_for_each(|object| self.throw_away(object));
         }
         let object = self.what_to_place(settled)?;
         let Some(goal) = &settled.goal else {
@@ -413,48 +447,6 @@ impl Planner<'_> {
         self.hold(object)?;
         self.place_on(bin);
         Ok(())
-    }
-
-    pub(crate) fn add_break(&mut self, settled: &Settled) -> Result<(), Fault> {
-        let objects = self.objects_to_break(settled)?;
-        let (tools, lacks, says) = match settled.intent {
-            Intent::Cut => (&self.devices.knives, "I need a knife for that.", "cutting"),
-            _ => (&self.devices.hammers, "I need the hammer for that.", "breaking"),
-        };
-        let tool = match &settled.tool {
-            Some((phrase, role)) if phrase.pronoun != Some(Pronoun::Place) => {
-                Some(self.find_one(phrase, &Want::place(Intent::Use, &[], None), Some(*role))?)
-            }
-            _ if self.may_find(tools) => return Err(self.need(tools, lacks)),
-            _ => self.tool(tools),
-        };
-        for object in objects {
-            if settled.intent == Intent::Cut && !self.has(object, Property::Cuttable) {
-                return Err(Fault::Cannot(format!("I cannot cut {}.", self.the(object))));
-            }
-            if let Some(tool) = tool.filter(|tool| *tool != object) {
-                self.hold(tool)?;
-            }
-            self.open_around(object, false);
-            self.interact(Verb::Break, object, says);
-        }
-        Ok(())
-    }
-
-    /// What is to be broken or cut. Who names a tool means to do it: the only thing that it may be is not asked about again.
-    fn objects_to_break(&mut self, settled: &Settled) -> Result<Vec<ObjectId>, Fault> {
-        let names_tool = settled.tool.as_ref().is_some_and(|(phrase, _)| !phrase.is_empty());
-        match self.find_objects(settled, &Want::object(settled.intent)) {
-            Err(Fault::Miss { miss: Miss::Several(ids), .. }) if names_tool && ids.len() == 1 => Ok(ids),
-            found => found,
-        }
-    }
-
-    /// One of these: that in the hand, or the nearest.
-    fn tool(&self, classes: &[ClassId]) -> Option<ObjectId> {
-        let held = self.scene.robot.held.and_then(|held| self.scene.object(held));
-        let held = held.filter(|held| classes.contains(&held.class)).map(|held| held.id);
-        held.or_else(|| self.nearest(classes))
     }
 }
 

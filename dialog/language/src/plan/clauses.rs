@@ -21,45 +21,85 @@ use crate::{
     },
 };
 
-/// Whether a clause has nothing to do with those beside it: where it cannot be done, they can.
-fn is_apart(clauses: &[Clause], index: usize) -> bool {
-    let own = slot::named(&clauses[index]);
-    let says_it = |phrase: &&Phrase| phrase.pronoun.is_some();
-    let others = || clauses.iter().enumerate().filter(|(at, _)| *at != index).map(|(_, clause)| clause);
-    let shares = |clause: &Clause| slot::named(clause).iter().any(|other| own.iter().any(|one| one.text == other.text));
-    let refers_back = clauses[index + 1..].iter().any(|clause| slot::named(clause).iter().any(says_it));
-    let is_deed = |clause: &Clause| clause.intent != Intent::Mention;
-    others().any(is_deed) && !own.is_empty() && !own.iter().any(says_it) && !refers_back && !others().any(shares)
+/// Whether a clause is about what another one does something to, or does something to where that puts things: `put the bread in the toaster,
+/// turn on the toaster`. To put two things in the same place is no such matter.
+fn is_about_same(own: &Clause, other: &Clause) -> bool {
+    let is_among = |phrase: &Phrase, others: &[&Phrase]| others.iter().any(|one| one.text == phrase.text);
+    let (own_named, other_named) = (slot::named(own), slot::named(other));
+    own.objects.iter().any(|phrase| is_among(phrase, &other_named))
+        || other.objects.iter().any(|phrase| is_among(phrase, &own_named))
+}
+
+/// What falls with a clause that cannot be done: itself, and what comes after it and is about the same, or says `it` of that. Nothing, where
+/// that cannot be told: then nothing of the request is done.
+fn falls_with(clauses: &[Clause], index: usize) -> Option<Vec<usize>> {
+    let own = &clauses[index];
+    let says_it = |clause: &Clause| slot::named(clause).iter().any(|phrase| phrase.pronoun.is_some());
+    let takes = |clause: &Clause| clause.intent == Intent::PickUp || clause.intent.is_about_held();
+    if slot::named(own).is_empty() || says_it(own) || clauses[..index].iter().any(|clause| is_about_same(own, clause)) {
+        return None;
+    }
+    let mut fallen = vec![index];
+    for (at, clause) in clauses.iter().enumerate().skip(index + 1) {
+        let goes_on = fallen.last() == Some(&(at - 1)) && (says_it(clause) || clause.is_means);
+        if goes_on || is_about_same(own, clause) {
+            fallen.push(at);
+        } else if says_it(clause) && takes(clause) && !takes(&clauses[at - 1]) {
+            // `take the plant, open the cupboard and put it in`: `it` may be what could not be taken.
+            return None;
+        }
+    }
+    Some(fallen)
 }
 
 impl Planner<'_> {
-    /// Adds the steps of all clauses.
+    /// Adds the steps of all clauses. Where one cannot be done, what has nothing to do with it is done all the same.
     pub(crate) fn run(&mut self, clauses: &[Clause]) -> Result<(), Fault> {
-        let mut impossible: Vec<String> = Vec::new();
+        let (mut impossible, mut fallen): (Vec<String>, Vec<usize>) = (Vec::new(), Vec::new());
         for (index, clause) in clauses.iter().enumerate() {
+            if fallen.contains(&index) {
+                continue;
+            }
             self.clause = index;
             self.begun = (self.steps.len(), self.focus.clone());
-            let is_apart = is_apart(clauses, index);
-            let before = (clause.is_means || is_apart).then(|| self.scene.clone());
+            let falls = falls_with(clauses, index);
+            let before = (clause.is_means || falls.is_some()).then(|| self.scene.clone());
+            let fixed = self.fixed.len();
             match (self.add(clause), clauses.get(index + 1)) {
                 // `take it, take the knife`: what was meant was said at once.
                 (Err(Fault::Miss { miss: Miss::NoReferent, .. }), Some(next)) if next.intent == clause.intent => {}
-                (Err(Fault::Cannot(why)), _) if is_apart => {
+                (Err(Fault::Cannot(why)), _) => {
+                    // What cannot be carried is said of all such things together.
+                    if self.fixed.len() == fixed || why != self.why_not_carried(&self.fixed[fixed..]) {
+                        impossible.push(why);
+                    }
+                    let Some(falls) = falls else {
+                        return Err(self.impossible(impossible, &clauses[index + 1..]));
+                    };
                     self.steps.truncate(self.begun.0);
                     self.focus = self.begun.1.clone();
                     before.into_iter().for_each(|scene| self.scene = scene);
-                    impossible.push(why);
+                    fallen.extend(falls);
                     continue;
                 }
                 (result, _) => result?,
             }
             before.filter(|_| clause.is_means).into_iter().for_each(|scene| self.drop_known_means(scene));
         }
-        if !impossible.is_empty() && self.steps.is_empty() {
-            return Err(Fault::Cannot(impossible.join(" ")));
+        if self.steps.is_empty() && (!impossible.is_empty() || !self.fixed.is_empty()) {
+            return Err(self.impossible(impossible, &[]));
         }
-        self.notes.extend(impossible.iter().map(|why| why.trim_end_matches('.').to_owned()));
+        self.left_out = self.why_left_out(impossible);
+        self.notes.extend(self.left_out.iter().map(|why| why.trim_end_matches('.').to_owned()));
         Ok(())
+    }
+
+    /// That none of a request can be done: why, of the clauses that follow, too, where things cannot be carried.
+    fn impossible(&mut self, why: Vec<String>, rest: &[Clause]) -> Fault {
+        if !self.fixed.is_empty() {
+            self.note_fixed(rest);
+        }
+        Fault::Cannot(self.why_left_out(why).unwrap_or_default())
     }
 
     /// `switch the power on by pulling the lever`: what the request comes to anyway is not done twice.
@@ -74,6 +114,7 @@ impl Planner<'_> {
     pub(crate) fn add(&mut self, clause: &Clause) -> Result<(), Fault> {
         match clause.intent {
             Intent::Stop => self.push(Action::Stop, "stopping".to_owned()),
+            Intent::Look | Intent::LookAround if let Some(room) = clause.looked_over() => return self.look_over(room),
             Intent::LookAround => self.push(Action::LookAround, "looking around".to_owned()),
             Intent::GoTo => return self.go_to(clause),
             Intent::Find => return self.find(clause),
@@ -184,8 +225,11 @@ impl Planner<'_> {
 
     fn add_door(&mut self, settled: &Settled) -> Result<(), Fault> {
         let opens = settled.intent == Intent::Open;
-        let wants_change =
-            |place: &ObjectId| self.scene.object(*place).is_some_and(|place| place.has(StateFlag::Opened) != opens);
+        // Nobody leaves by the door of a fridge.
+        let wants_change = |place: &ObjectId| {
+            let is_other = self.scene.object(*place).is_some_and(|place| place.has(StateFlag::Opened) != opens);
+            is_other && !settled.is_leaving
+        };
         let objects = match self.place_with_door(settled).filter(wants_change) {
             Some(place) => vec![place],
             None => self.find_objects(settled, &Want::object(settled.intent))?,
@@ -199,10 +243,23 @@ impl Planner<'_> {
             } else if opens {
                 self.interact(Verb::Open, object, "opening");
             } else {
+                if settled.is_leaving {
+                    self.leave_by(object);
+                }
                 self.interact(Verb::Close, object, "closing");
             }
         }
         Ok(())
+    }
+
+    /// Goes out by a door: it is shut from the room where the robot is then.
+    fn leave_by(&mut self, door: ObjectId) {
+        let here = self.scene.robot.room;
+        let known = self.scene.object(door).zip(self.scene.floor.as_ref());
+        match known.and_then(|(door, floor)| floor.plan.beyond(&door.instance, here)) {
+            Some(room) => self.go_to_room(room),
+            None => self.notes.push("I do not know what is behind that door, so I close it from here".to_owned()),
+        }
     }
 
     /// `put it in the microwave and shut the door`: the microwave's.

@@ -14,7 +14,7 @@ use crate::{
     understanding::Asking,
     words::{
         intent::Intent,
-        lexicon::{Direction, Preposition, Pronoun, Side},
+        lexicon::{Direction, NamedRoom, Preposition, Pronoun, Side},
     },
 };
 
@@ -254,6 +254,18 @@ impl Planner<'_> {
             Side::Behind => self.rotate(-180.0, true),
             _ => self.push(Action::Move { distance_m: DEFAULT_MOVE_M }, "moving forward 1 meter".to_owned()),
         }
+    }
+
+    /// Goes to a room, and looks around there.
+    pub(crate) fn look_over(&mut self, room: &NamedRoom) -> Result<(), Fault> {
+        if !self.scene.may_have_room(room.id) {
+            return Err(Fault::Cannot(format!("There is no {} here.", room.name)));
+        }
+        if self.scene.robot.room != room.id {
+            self.go_to_room(room.id);
+        }
+        self.push(Action::LookAround, "looking around".to_owned());
+        Ok(())
     }
 
     pub(crate) fn look(&mut self, clause: &Clause) {

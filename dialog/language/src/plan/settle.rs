@@ -11,7 +11,7 @@ use crate::{
     },
     words::{
         intent::Intent,
-        lexicon::{Manner, Preposition, Pronoun},
+        lexicon::{Manner, Preposition, Pronoun, Side},
     },
 };
 
@@ -36,6 +36,8 @@ pub(crate) struct Settled {
     pub(crate) is_left: bool,
     /// Whether it was wished for.
     pub(crate) is_wish: bool,
+    /// Whether it is done by who goes out.
+    pub(crate) is_leaving: bool,
 }
 
 /// Where the object is to go, or where it is to be done.
@@ -76,6 +78,7 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
         color: clause.color.clone(),
         fluid: clause.fluid,
         is_wish: clause.is_wish,
+        is_leaving: clause.is_leaving,
         is_left: clause.manner == Some(Manner::Leave),
         is_inserted: clause.manner == Some(Manner::Insert),
         is_back: clause.manner == Some(Manner::Back),
@@ -91,6 +94,8 @@ pub(crate) fn settle(planner: &Planner<'_>, clause: &Clause) -> Settled {
             // `put it into the fridge with it`: said twice.
             (Preposition::With, Place::Object(phrase))
                 if matches!(clause.intent, Intent::Place | Intent::Bring) && phrase.is_bare_pronoun() => {}
+            // `shut the door behind you`: from where the robot is then, and not the door at its back.
+            (_, Place::Side(Side::Behind)) if clause.intent == Intent::Close => {}
             // `fill it from the tap`
             (Preposition::From, Place::Object(_)) if clause.intent == Intent::Fill => {
                 settled.take_place(planner, Preposition::At, place, role);
@@ -197,6 +202,12 @@ impl Settled {
             (Some(_), _) | (None, Place::Side(_) | Place::Here) => self.describe_object(preposition, place),
             // `fill the bowl in the kitchen` says where the bowl is, `put it in the kitchen` where it goes.
             (None, Place::Room(_)) if !matches!(self.intent, Intent::Place | Intent::Bring | Intent::Drop) => {
+                self.describe_object(preposition, place);
+            }
+            // `wash the shirt on the floor`: nothing is done on the floor.
+            (None, Place::Object(phrase))
+                if phrase.is_floor && !matches!(self.intent, Intent::Place | Intent::Drop | Intent::Throw) =>
+            {
                 self.describe_object(preposition, place);
             }
             // `bring me the thing on the desk`

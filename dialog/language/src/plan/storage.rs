@@ -8,7 +8,7 @@ use crate::{
     ground::want::Want,
     known::KnownObject,
     plan::{Fault, Planner, settle::Settled},
-    read::slot::Role,
+    read::{phrase::Relation, slot::Role},
 };
 
 /// How much less often things like it may be kept in a place than in that which has most of them.
@@ -44,7 +44,8 @@ impl Planner<'_> {
     /// `put away everything on the table`: which table, where that is not known.
     pub(crate) fn ask_what_is_cleared(&self, settled: &Settled) -> Result<(), Fault> {
         let described = settled.objects.last().filter(|_| settled.is_of_everything());
-        for relation in described.iter().flat_map(|object| &object.relations).filter(|one| one.to.chosen.is_none()) {
+        let is_open = |one: &&Relation| one.to.chosen.is_none() && !one.to.is_floor;
+        for relation in described.iter().flat_map(|object| &object.relations).filter(is_open) {
             let want = Want::place(settled.intent, &[], None);
             self.find_one(&relation.to, &want, Some(Role::Place(0)))?;
         }

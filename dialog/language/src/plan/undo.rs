@@ -95,6 +95,11 @@ impl Planner<'_> {
         let origin = known.filter(|origin| self.has(*origin, Property::Receptacle));
         let Some(origin) = origin else {
             let the = self.the(object);
+            if self.focus.off_floor.iter().any(|(taken, _)| *taken == object) {
+                return Err(Fault::Cannot(format!(
+                    "I took {the} from the floor, and I can put things only on or into something. Tell me where to put it."
+                )));
+            }
             return Err(Fault::Cannot(format!("I do not remember where {the} was. Tell me where to put it.")));
         };
         if self.is_in(object, origin) {

@@ -7,7 +7,7 @@ use crate::{
     read::phrase::{Phrase, Place},
     words::{
         intent::Intent,
-        lexicon::{Direction, Manner, Preposition, Pronoun},
+        lexicon::{Direction, Manner, NamedRoom, Preposition, Pronoun},
     },
 };
 
@@ -35,6 +35,9 @@ pub(crate) struct Clause {
     /// Whether it was wished for rather than asked for.
     #[serde(default)]
     pub(crate) is_wish: bool,
+    /// Whether it is done by who goes out: `on your way out`.
+    #[serde(default)]
+    pub(crate) is_leaving: bool,
 }
 
 impl Clause {
@@ -50,6 +53,18 @@ impl Clause {
 
     pub(crate) fn names_any(&self) -> bool {
         !self.objects.is_empty() || !self.places.is_empty()
+    }
+
+    /// The room that is to be looked over: `look in the kitchen`.
+    pub(crate) fn looked_over(&self) -> Option<&NamedRoom> {
+        let is_turned = !matches!(self.direction, None | Some(Direction::Around));
+        if is_turned || !matches!(self.intent, Intent::Look | Intent::LookAround) {
+            return None;
+        }
+        match self.places.as_slice() {
+            [(Preposition::In, Place::Room(room))] => Some(room),
+            _ => None,
+        }
     }
 
     /// The thing that was named last.
@@ -83,6 +98,7 @@ impl Clause {
             manner: None,
             is_means: false,
             is_wish: false,
+            is_leaving: false,
         }
     }
 }

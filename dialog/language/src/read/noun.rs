@@ -294,6 +294,9 @@ impl<'a> Reader<'a> {
         } else if let Some((length, fluid)) = lexicon.fluids.longest(rest) {
             phrase.fluid = Some(*fluid);
             self.at += length;
+        } else if self.at_floor() && self.is_free_noun() {
+            phrase.is_floor = true;
+            self.at += 1;
         } else if let Some((length, namings)) = lexicon.name_parts.longest(rest).filter(|_| self.is_free_noun()) {
             phrase.namings = namings.clone();
             self.at += length;

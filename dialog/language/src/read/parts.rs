@@ -1,5 +1,7 @@
 //! The parts of an utterance, in order: requests, talk, things named without a verb.
 
+use std::ops::Range;
+
 use cohabit_cdf::Catalog;
 
 use crate::{
@@ -8,11 +10,11 @@ use crate::{
         clause::{self, Clause, Part},
         phrase::{Phrase, Place},
         reader::Reader,
-        reading, segments, wish,
+        reading, segments, slot, wish,
     },
     words::{
         intent::Intent,
-        lexicon::{Lexicon, Preposition},
+        lexicon::{Lexicon, Preposition, Pronoun},
         token,
     },
 };
@@ -20,7 +22,10 @@ use crate::{
 /// The parts of an utterance, in order.
 pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Vec<Part> {
     let mut parts = Vec::new();
-    for cut in segments::cuts(lexicon, words) {
+    let cuts = segments::cuts(lexicon, words);
+    let first = segments::done_first(lexicon, words, &cuts);
+    let mut early: Option<Range<usize>> = None;
+    for (number, cut) in cuts.into_iter().enumerate() {
         let before = parts.len();
         let is_consequence = cut.start > 0 && words[cut.start - 1] == "so" || words[cut.start] == "so";
         read_segment(lexicon, catalog, &words[cut], &mut parts);
@@ -28,8 +33,35 @@ pub(crate) fn parts(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> V
         if is_consequence && parts[before..].iter().any(asks) {
             parts[..before].iter_mut().for_each(demote);
         }
+        if first.as_ref().is_some_and(|first| first.contains(&number)) {
+            early = Some(early.map_or(before, |early| early.start)..parts.len());
+        }
     }
+    early.into_iter().for_each(|early| move_to_front(&mut parts, early));
     parts
+}
+
+/// What is to be carried out first stands before all else; `it` in it is what was named before it.
+fn move_to_front(parts: &mut Vec<Part>, early: Range<usize>) {
+    let is_request = |part: &Part| matches!(part, Part::Clause(_));
+    if !parts[early.clone()].iter().any(is_request) {
+        return;
+    }
+    let named = parts[..early.start].iter().rev().find_map(|part| match part {
+        Part::Clause(clause) => slot::named(clause).first().map(|phrase| (*phrase).clone()),
+        Part::Fragment(phrase) | Part::Mention(phrase) => Some(phrase.clone()),
+        _ => None,
+    });
+    let mut moved: Vec<Part> = parts.drain(early).collect();
+    if let Some(named) = named.filter(|phrase| !phrase.is_empty()) {
+        let objects = moved.iter_mut().flat_map(|part| match part {
+            Part::Clause(clause) => clause.objects.as_mut_slice(),
+            _ => &mut [],
+        });
+        let is_it = |phrase: &&mut Phrase| phrase.pronoun == Some(Pronoun::Thing) && phrase.is_bare_pronoun();
+        objects.filter(is_it).for_each(|phrase| *phrase = named.clone());
+    }
+    parts.splice(0..0, moved);
 }
 
 /// `i could use a coffee, so take the mug`: what was wished for is the reason.

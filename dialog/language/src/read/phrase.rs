@@ -15,6 +15,9 @@ pub(crate) struct Phrase {
     /// An instance id, lower case.
     pub(crate) instance: Option<String>,
     pub(crate) fluid: Option<Fluid>,
+    /// Whether it is the floor: no thing, but what lies on nothing lies on it.
+    #[serde(default)]
+    pub(crate) is_floor: bool,
     pub(crate) color: Option<String>,
     pub(crate) states: Vec<StateWord>,
     pub(crate) side: Option<Side>,
@@ -36,6 +39,9 @@ pub(crate) struct Phrase {
     /// Whether its look was said after it, by `that is`, and so perhaps of what stands before it.
     #[serde(default)]
     pub(crate) is_look_late: bool,
+    /// Where somebody thinks that it is: one of these, or somewhere else.
+    #[serde(default)]
+    pub(crate) hints: Vec<Phrase>,
     /// Words in it that mean nothing to the robot.
     pub(crate) unknown: Vec<String>,
     /// What it was found to mean when the robot asked.
@@ -88,6 +94,7 @@ impl Phrase {
             && self.namings.is_empty()
             && self.instance.is_none()
             && self.fluid.is_none()
+            && !self.is_floor
             && self.chosen.is_none()
     }
 
@@ -182,6 +189,10 @@ impl Phrase {
             Place::Side(side) => self.side = Some(side),
             Place::Viewpoints(_) => {}
             Place::Object(mut to) => {
+                // `the ball on the kitchen floor`: the ball is in that room.
+                if to.is_floor {
+                    self.room = self.room.or(to.room.take());
+                }
                 // `the thing next to the computer that is not the cartridge`: no cartridge is a computer.
                 let nots = std::mem::take(&mut to.not);
                 let is_same = |not: &Self| not.namings.iter().any(|naming| to.naming(naming.class).is_some());

@@ -215,6 +215,10 @@ impl<'a> Reader<'a> {
             *self = reader;
             return Some(place);
         }
+        if let Some(floor) = reader.floor() {
+            *self = reader;
+            return Some(Place::Object(floor));
+        }
         reader.skip(|lexicon| &lexicon.articles);
         if reader.room_before_noun().is_none()
             && let Some((length, room)) = reader.lexicon.rooms.longest(reader.rest())
@@ -228,6 +232,43 @@ impl<'a> Reader<'a> {
         let phrase = reader.phrase()?;
         *self = reader;
         Some(Place::Object(phrase))
+    }
+
+    /// `the floor`, `the kitchen floor`; what is called by that word and another one is a thing: `the floor lamp`.
+    fn floor(&mut self) -> Option<Phrase> {
+        let mut reader = *self;
+        reader.skip(|lexicon| &lexicon.articles);
+        let room = reader.lexicon.rooms.longest(reader.rest());
+        let (length, room) = room.map_or((0, None), |(length, room)| (length, Some(*room)));
+        let of_room = Self { at: reader.at + length, ..reader };
+        let (floor, room) = if of_room.at_floor() { (of_room, room) } else { (reader, None) };
+        if !floor.at_floor() {
+            return None;
+        }
+        let start = self.at;
+        self.at = floor.at + 1;
+        let text = self.words[start..self.at].join(" ");
+        Some(Phrase { text, room, is_floor: true, ..Phrase::default() })
+    }
+
+    /// Whether the next word is the floor, and no name of a thing.
+    pub(crate) fn at_floor(&self) -> bool {
+        let rest = self.rest();
+        rest.first().is_some_and(|word| self.lexicon.yes_no.says_floor(std::slice::from_ref(word)))
+            && self.lexicon.classes.longest(rest).is_none()
+    }
+
+    /// A room with which a request ends; no step forward, if there is none.
+    pub(crate) fn last_room(&mut self) -> Option<Place> {
+        let mut reader = *self;
+        let room = reader.destination().filter(|place| matches!(place, Place::Room(_)))?;
+        let mut after = reader;
+        after.skip(|lexicon| &lexicon.trail);
+        let is_last = after.rest().first().is_none_or(|word| token::is_punctuation(word));
+        is_last.then(|| {
+            *self = reader;
+            room
+        })
     }
 
     /// `viewpoint 3 in the lab`, `lab1_3`.

@@ -102,11 +102,20 @@ pub(crate) fn read_as(
     clause.manner = lexicon.manners.exact(&token::words(verb)).copied();
     let mut reader = Reader::new(lexicon, words);
     reader.at = verb_length;
+    // `fill also the cup`, and not `fill also`.
+    let besides = lexicon.fillers.besides.longest(reader.rest()).map_or(0, |(length, ())| length);
+    if verb_length > 0 && reader.rest().get(besides).is_some_and(|next| !token::is_punctuation(next)) {
+        reader.at += besides;
+    }
     match intent {
         // `go back one meter`: no way to a thing of that name.
         Intent::GoTo if matches!(amount(lexicon, reader.rest()), Some(Amount::Meters(_))) => return None,
         Intent::GoTo => clause.places.push((Preposition::To, reader.destination()?)),
         Intent::Travel | Intent::Turn | Intent::Look => read_motion(&mut reader, &mut clause),
+        // `look around the kitchen`
+        Intent::LookAround if let Some(room) = reader.last_room() => clause.places.push((Preposition::In, room)),
+        // `look in the kitchen` is no look into a thing.
+        Intent::LookIn if reader.last_room().is_some() => return None,
         _ => read_objects(&mut reader, &mut clause),
     }
     tail::read_tail(&mut reader, &mut clause);
@@ -341,7 +350,7 @@ pub(crate) fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
                 || clause.direction.is_some_and(turns)
                 || clause.direction.is_none() && matches!(clause.amount, Some(Amount::Degrees(_) | Amount::Bare(_)))
         }
-        Intent::Look => clause.direction.is_some() && is_whole(clause),
+        Intent::Look => (clause.direction.is_some() || clause.looked_over().is_some()) && is_whole(clause),
         Intent::LookAround | Intent::Brew | Intent::Tea | Intent::Impossible => true,
         Intent::PickUp => has_object && !clause.places.iter().any(|(preposition, _)| *preposition == Preposition::To),
         Intent::Place => has_object || !clause.places.is_empty(),
@@ -356,6 +365,10 @@ pub(crate) fn is_complete(clause: &Clause, catalog: &Catalog) -> bool {
 
 /// Whether something it names affords what the verb asks.
 fn is_sensible(clause: &Clause, catalog: &Catalog) -> bool {
+    // `look at the floor` looks down.
+    if clause.objects.iter().any(|phrase| phrase.is_floor) {
+        return false;
+    }
     let affordances = clause.intent.affordances();
     let Some(phrase) = clause.objects.first().filter(|phrase| !phrase.namings.is_empty()) else { return true };
     affordances.is_empty()

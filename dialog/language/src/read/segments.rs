@@ -59,6 +59,38 @@ pub(crate) fn cuts(lexicon: &Lexicon, words: &[String]) -> Vec<Range<usize>> {
     cuts
 }
 
+/// The cuts that are to be carried out before those in front of them: `take the mug, but first open the fridge`, and what goes on with
+/// `and`.
+pub(crate) fn done_first(lexicon: &Lexicon, words: &[String], cuts: &[Range<usize>]) -> Option<Range<usize>> {
+    // `take the mug. before that, open the fridge`
+    let is_announced = |at: usize| at > 1 && lexicon.beforehand.exact(said_in(words, &cuts[at - 1])).is_some();
+    let first = (1..cuts.len()).rev().find(|at| is_announced(*at) || is_done_first(lexicon, words, &cuts[*at]))?;
+    let goes_on = |cut: &&Range<usize>| words[cut.start - 1] == "and";
+    let more = cuts[first + 1..].iter().take_while(goes_on).count();
+    Some(first..first + 1 + more)
+}
+
+/// Whether a cut behind others begins or ends in words that say so; `then first` tells the order as it is, and `the first` is a thing.
+fn is_done_first(lexicon: &Lexicon, words: &[String], cut: &Range<usize>) -> bool {
+    let said = said_in(words, cut);
+    let begins = lexicon.beforehand.longest(said).is_some_and(|(length, ())| length < said.len());
+    let ends = || {
+        (1..said.len()).any(|at| {
+            lexicon.beforehand.exact(&said[at..]).is_some() && lexicon.articles.exact(&said[at - 1..at]).is_none()
+        })
+    };
+    words[cut.start - 1] != "then" && (begins || ends())
+}
+
+/// The words of a cut without the punctuation around them.
+fn said_in<'a>(words: &'a [String], cut: &Range<usize>) -> &'a [String] {
+    let is_said = |at: &usize| !token::is_punctuation(&words[*at]);
+    match (cut.clone().find(is_said), cut.clone().rfind(is_said)) {
+        (Some(start), Some(last)) => &words[start..=last],
+        _ => &[],
+    }
+}
+
 /// `go ahead and`, `be so kind and`: no joint between two requests.
 fn ends_courtesy(lexicon: &Lexicon, words: &[String]) -> bool {
     let is_one = |start: usize| {

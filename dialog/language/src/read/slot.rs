@@ -76,6 +76,15 @@ pub(crate) fn named(clause: &Clause) -> Vec<&Phrase> {
     clause.objects.iter().chain(places).collect()
 }
 
+/// The same, to be changed.
+pub(crate) fn named_mut(clause: &mut Clause) -> impl Iterator<Item = &mut Phrase> {
+    let places = clause.places.iter_mut().filter_map(|(_, place)| match place {
+        Place::Object(phrase) => Some(phrase),
+        _ => None,
+    });
+    clause.objects.iter_mut().chain(places)
+}
+
 /// Whether a clause names two things, or several together.
 pub(crate) fn is_of_two(clause: &Clause) -> bool {
     let named = phrases(clause);

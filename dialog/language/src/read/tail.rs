@@ -26,6 +26,11 @@ pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         if reader.until(clause) || color::read_color(reader, clause) || color::read_fluid(reader, clause) {
             continue;
         }
+        if let Some((length, ())) = reader.lexicon.exits.longest(reader.rest()) {
+            clause.is_leaving = true;
+            reader.at += length;
+            continue;
+        }
         let is_linked = reader.is_linked();
         if let Some(place) = reader.place() {
             // `the cup that is on the desk`: no place to do it at.

@@ -7,6 +7,7 @@ use crate::{
         inflect::{self, stem},
         lexicon::{Lexicon, Preposition},
         table::PhraseTable,
+        token,
     },
 };
 
@@ -20,6 +21,18 @@ pub(crate) fn request(lexicon: &Lexicon, words: &[String]) -> Option<(Vec<String
 /// Whether a wish with words of its own begins there.
 pub(crate) fn is_said(lexicon: &Lexicon, words: &[String]) -> bool {
     spoken(lexicon, chunk(lexicon, words)).is_some()
+}
+
+/// `it should stay there`: nothing is to be done to it.
+pub(crate) fn leaves_as_is(lexicon: &Lexicon, words: &[String]) -> bool {
+    let stays = |words: &[String]| {
+        let (_, after) = thing(lexicon, words)?;
+        let (must, ()) = lexicon.wishes.musts.longest(after)?;
+        let (_, rest) = after[must..].split_first().filter(|(stay, _)| lexicon.wishes.stayers.contains(*stay))?;
+        let (length, ()) = lexicon.wishes.as_is.longest(rest)?;
+        is_after(lexicon, &rest[length..]).then_some(())
+    };
+    words.split(|word| token::is_punctuation(word)).any(|chunk| stays(chunk).is_some())
 }
 
 /// The words up to the next request, and to what is not wished for: `… than on the table`.

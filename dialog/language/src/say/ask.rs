@@ -155,10 +155,16 @@ pub(crate) fn is_it(name: &str) -> Understanding {
     confirmation(format!("I understand: {name}. Shall I?"))
 }
 
-/// Which of these plans is meant?
-pub(crate) fn which_plan(names: &[&str]) -> Understanding {
+/// Which of these plans is meant? What all of them begin with, and end with, is said once.
+pub(crate) fn which_plan(names: &[&str], head: &str, tail: &str) -> Understanding {
     let named: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-    let text = format!("I am not sure what you mean: {}?", prose::list(&named, "or"));
+    let which = prose::list(&named, "or");
+    let text = match (head, tail) {
+        ("", "") => format!("I am not sure what you mean: {which}?"),
+        ("", tail) => format!("I am not sure what you mean before {tail}: {which}?"),
+        (head, "") => format!("I understand: {head}. I am not sure what comes then: {which}?"),
+        (head, tail) => format!("I understand: {head}. I am not sure what comes then, before {tail}: {which}?"),
+    };
     of_kind(Clarification::Confirmation, "", text, names)
 }
 

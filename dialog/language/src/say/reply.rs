@@ -41,20 +41,43 @@ pub(crate) fn plan_reply(steps: &[Step], notes: &[String]) -> String {
     parts.join(" ")
 }
 
+/// A part of a plan in words.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub(crate) struct Told {
+    says: String,
+    /// What is opened, closed and gone to: where there is much to tell, that goes without saying.
+    is_on_the_way: bool,
+}
+
+impl Told {
+    /// What a step says.
+    pub(crate) fn of_step(step: &Step) -> Self {
+        let is_on_the_way =
+            matches!(step.action, Action::Interact { verb: Verb::Open | Verb::Close, .. } | Action::GoTo { .. });
+        Self { says: step.says.clone(), is_on_the_way }
+    }
+
+    /// What is planned once it comes to it.
+    pub(crate) const fn then(says: String) -> Self {
+        Self { says, is_on_the_way: false }
+    }
+}
+
 /// `picking up the milk and then putting the milk on the table`
 pub(crate) fn plan_in_words(steps: &[Step]) -> String {
-    let named = |is_told: &dyn Fn(&Step) -> bool| {
-        let mut says: Vec<String> = steps.iter().filter(|step| is_told(step)).map(|step| step.says.clone()).collect();
+    told_in_words(&steps.iter().map(Told::of_step).collect::<Vec<_>>())
+}
+
+/// The parts of a plan as one.
+pub(crate) fn told_in_words(told: &[Told]) -> String {
+    let named = |is_named: &dyn Fn(&Told) -> bool| {
+        let mut says: Vec<String> = told.iter().filter(|part| is_named(part)).map(|part| part.says.clone()).collect();
         says.dedup();
         says
     };
     let mut says = named(&|_| true);
     if says.len() > FEW {
-        // What is opened and closed on the way goes without saying.
-        let is_on_the_way = |step: &Step| {
-            matches!(step.action, Action::Interact { verb: Verb::Open | Verb::Close, .. } | Action::GoTo { .. })
-        };
-        says = Some(named(&|step| !is_on_the_way(step))).filter(|says| !says.is_empty()).unwrap_or(says);
+        says = Some(named(&|part| !part.is_on_the_way)).filter(|says| !says.is_empty()).unwrap_or(says);
     }
     if says.len() > NAMED {
         let last = says.last().cloned();
@@ -70,6 +93,12 @@ pub(crate) fn request_in_words(clauses: &[Clause]) -> String {
     let asked: Vec<String> =
         clauses.iter().filter(|clause| clause.intent != Intent::Mention).map(clause_in_words).collect();
     prose::list(&asked, "and then")
+}
+
+/// `finding the bowl`, `putting it on the table`: the same, as what is done.
+pub(crate) fn doings(clauses: &[Clause]) -> impl Iterator<Item = String> {
+    let asked = clauses.iter().filter(|clause| clause.intent != Intent::Mention);
+    asked.map(|clause| prose::doing(&clause_in_words(clause)))
 }
 
 fn clause_in_words(clause: &Clause) -> String {
@@ -100,12 +129,28 @@ fn clause_in_words(clause: &Clause) -> String {
     words.chain(away).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
-/// The names of plans without the steps that all of them begin with.
-pub(crate) fn apart(plans: &[&[Step]]) -> Vec<String> {
-    let first = plans.first().copied().unwrap_or_default();
-    let shared = (0..first.len()).take_while(|at| plans.iter().all(|plan| plan.get(*at) == Some(&first[*at]))).count();
-    let shared = if plans.iter().all(|plan| plan.len() > shared) { shared } else { 0 };
-    plans.iter().map(|plan| plan_in_words(&plan[shared..])).collect()
+/// Plans told apart.
+pub(crate) struct Apart {
+    /// What all of them begin with, and end with, in words; nothing, where they do not.
+    pub(crate) head: String,
+    pub(crate) tail: String,
+    /// What each does between.
+    pub(crate) names: Vec<String>,
+}
+
+/// What several plans share, and what each has of its own. Where one has nothing of its own, nothing is shared: it would have no name.
+pub(crate) fn apart(plans: &[Vec<Told>]) -> Apart {
+    let first = plans.first().map(Vec::as_slice).unwrap_or_default();
+    let most = plans.iter().map(Vec::len).min().unwrap_or_default().saturating_sub(1);
+    let is_shared = |at: &usize| plans.iter().all(|plan| plan[*at] == first[*at]);
+    let head = (0..most).take_while(is_shared).count();
+    let is_shared = |at: &usize| plans.iter().all(|plan| plan[plan.len() - 1 - at] == first[first.len() - 1 - at]);
+    let tail = (0..most - head).take_while(is_shared).count();
+    Apart {
+        head: told_in_words(&first[..head]),
+        tail: told_in_words(&first[first.len() - tail..]),
+        names: plans.iter().map(|plan| told_in_words(&plan[head..plan.len() - tail])).collect(),
+    }
 }
 
 /// What to say where a phrase found nothing; mismatches and several candidates are questions of their own.

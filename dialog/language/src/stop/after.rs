@@ -113,7 +113,7 @@ impl Said<'_> {
     }
 
     /// Where the next request begins, after what is to be stopped.
-    fn joint(&self, at: usize, end: usize) -> usize {
+    pub(crate) fn joint(&self, at: usize, end: usize) -> usize {
         let begins =
             |at: &usize| self.words.joints.contains(self.word(*at)) || self.words.requests.contains(self.word(*at));
         (at + 1..end).find(begins).unwrap_or(end)

@@ -85,6 +85,23 @@ impl Said<'_> {
         Some(Found { end, firmness, is_plain: false })
     }
 
+    /// The words for what a phrase at `at` drops, whatever is said behind it: none of `forget it`, `the mug` of `never mind the mug`.
+    pub(crate) fn dropped_at(&self, number: usize, at: usize) -> Option<Range<usize>> {
+        let end = self.clauses[number].words.end;
+        // `no no no` corrects as often.
+        let weak = if self.word(at) == "no" { 0 } else { self.length(&self.words.weak, at, end) };
+        let whole = self.length(&self.words.dismissal, at, end).max(weak);
+        let thing = at + self.length(&self.words.drops, at, end);
+        let dropped = if whole > 0 && self.after_spare(at + whole, end, true) == end {
+            end..end
+        } else if thing > at && self.words.determiners.contains(self.word(thing)) && thing + 1 < end {
+            thing..self.joint(thing + 1, end)
+        } else {
+            return None;
+        };
+        self.begins(number, at).then_some(dropped)
+    }
+
     /// `don't you go any closer`
     fn forbids_motion(&self, number: usize, at: usize) -> Option<usize> {
         let end = self.clauses[number].words.end;

@@ -18,6 +18,7 @@ pub(crate) struct Words {
     pub(crate) open: PhraseTable<()>,
     pub(crate) weak: PhraseTable<()>,
     pub(crate) dismissal: PhraseTable<()>,
+    pub(crate) drops: PhraseTable<()>,
     pub(crate) pause: PhraseTable<()>,
     pub(crate) lead: PhraseTable<()>,
     pub(crate) closing: PhraseTable<()>,

@@ -51,7 +51,12 @@ impl Conversation<'_> {
             && parts.iter().any(|part| matches!(part, Part::Clause(_)));
         let is_yes = (self.small_at_start(words, Small::Yes) || is(Small::Resume)) && !is_command;
         let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
-        if leaves && !is_command && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1) {
+        // `no, not the dryer`
+        let declines = matches!(pending, Pending::Also { .. }) && self.small_at_start(words, Small::No);
+        if (leaves || declines)
+            && !is_command
+            && !matches!(&pending, Pending::Which { candidates, .. } if candidates.len() == 1)
+        {
             return Some(Understanding::answer(LEAVES));
         }
         match pending {
@@ -67,7 +72,15 @@ impl Conversation<'_> {
             Pending::Guess { mut guesses } => {
                 let names: Vec<String> = guesses.iter().map(|guess| guess.name.clone()).collect();
                 let at = self.chosen_plan(words, is_yes || is(Small::Any), is_command, &names)?;
-                Some(self.go_as_guessed(guesses.swap_remove(at), context))
+                let guess = self.without_denied(guesses.swap_remove(at), words)?;
+                Some(self.go_as_guessed(guess, context))
+            }
+            Pending::Also { guess, .. } => {
+                let is_wanted = is_yes || is(Small::More) || self.is_all(words);
+                let names = std::slice::from_ref(&guess.name);
+                // `what is in the dryer?` is no wish for it.
+                let names_it = || !self.is_aside(words) && self.chosen_plan(words, false, is_command, names).is_some();
+                (is_wanted || names_it()).then(|| self.agreed_to_more((*guess).clone(), context))
             }
             Pending::Search { clauses } if is_yes || is(Small::Search) => {
                 Some(self.plan(clauses, Consent::default(), context))
@@ -143,6 +156,12 @@ impl Conversation<'_> {
         context: &mut Context,
     ) -> Option<Understanding> {
         let mut then = Context { pending: pending.cloned(), later: Vec::new(), ..context.clone() };
+        // `the second one, but without closing the dryer`
+        if let Some(Pending::Guess { guesses }) = &mut then.pending {
+            guesses
+                .iter_mut()
+                .for_each(|guess| *guess = self.without_denied(guess.clone(), rest).unwrap_or(guess.clone()));
+        }
         let understanding = match pending? {
             Pending::Lab { words: before, at } => {
                 let kind = room_kind::standing_at(self.lexicon, self.scene, before, *at)?;

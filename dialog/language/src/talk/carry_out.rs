@@ -77,6 +77,7 @@ impl Conversation<'_> {
             return Understanding::answer(text);
         }
         context.begin(&planner.steps);
+        context.left_out = planner.left_out;
         Understanding::Plan { steps: planner.steps, reply: text }
     }
 

@@ -89,7 +89,8 @@ impl Conversation<'_> {
             };
             self.clauses(request).iter().any(|clause| slot::named(clause).iter().any(&is_it))
         };
-        !is_negated && question.about.as_ref().is_none_or(is_named)
+        // Who is in another room nobody finds out by doing something else.
+        !is_negated && question.kind != QuestionKind::People && question.about.as_ref().is_none_or(is_named)
     }
 
     /// What a condition is about is what `it` stands for after it.

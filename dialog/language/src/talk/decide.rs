@@ -6,7 +6,10 @@ use cohabit_cdf::RoomId;
 use crate::{
     context::{Context, Guess, Pending},
     read::tail,
-    say::{ask, reply},
+    say::{
+        ask,
+        reply::{self, Told},
+    },
     stop,
     talk::{
         conversation::Conversation,
@@ -16,8 +19,8 @@ use crate::{
         way::Way,
         wording::Wording,
     },
-    understanding::{Asking, Clarification, Step, Understanding},
-    words::token,
+    understanding::{Asking, Clarification, Understanding},
+    words::{prose, token},
 };
 
 /// How likely steps must be meant for them to be taken without a question, where what they change is not simply put back and where it is.
@@ -25,6 +28,9 @@ const TO_CHANGE: f32 = 0.72;
 const TO_MOVE: f32 = 0.72;
 /// The same where nothing but the robot itself is moved.
 const TO_LOOK: f32 = 0.45;
+/// The same where somebody says that another thing was meant than the one that was taken, and there is one plan only: who was misunderstood
+/// once need not say it a third time.
+const TO_CORRECT: f32 = 0.45;
 /// How likely what is said must be the right reply, where nothing is done.
 const TO_REPLY: f32 = 0.2;
 /// How likely steps must be meant to be proposed, and to be taken where nothing may be asked.
@@ -128,13 +134,25 @@ impl Conversation<'_> {
             return likeliest.taken(context);
         }
         if reading == Reading::Partial
+            && self.judge.asking != Asking::Always
+            && !context.last_plan.is_empty()
+            && self.lexicon.corrections.occurs_in(&wording.words)
+            && let Some(meant) = only_plan(&ways)
+        {
+            return meant.taken(context);
+        }
+        if reading == Reading::Partial
             && let Some((begun, left)) = begun(&ways)
         {
             let (understanding, probability) = begun.taken(context);
-            return match left {
-                Some(left) => (understanding.before(&left), probability),
-                None => (understanding, probability),
+            let Some(left) = left.filter(|_| self.judge.asking != Asking::Never) else {
+                return (understanding, probability);
             };
+            context.pending = left.offer.map(|guess| {
+                let question = left.said.clone();
+                Pending::Also { guess: Box::new(guess), question, is_asked: false }
+            });
+            return (understanding.before(&left.said), probability);
         }
         if is_about_word {
             return by_grammar.taken(context);
@@ -181,6 +199,10 @@ impl Conversation<'_> {
 
     /// How much of it the grammar reads.
     fn reading(&self, wording: &Wording<'_>, is_plain: bool, by_grammar: &Way, context: &Context) -> Reading {
+        // A rewriter drops on which side of a door the robot is in the end.
+        if is_plain && by_grammar.steps().is_some() && self.lexicon.exits.occurs_in(&wording.tidied) {
+            return Reading::Sure;
+        }
         let said = wording.length();
         let asks_for_lab = |context: &Context| matches!(context.pending, Some(Pending::Lab { .. }));
         // Not `slab`, of which the spelling makes a lab.
@@ -190,10 +212,15 @@ impl Conversation<'_> {
         let is_strange = context.pending.is_none() && is_strange(wording);
         let is_too_long = wording.utterance.chars().nth(token::MAX_CHARS).is_some();
         let is_conditional = by_grammar.is_understood() && self.is_plain_conditional(&wording.tidied, context);
-        let is_answer =
-            by_grammar.steps().is_some() && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
+        // What is offered besides a plan may be agreed to, or left, without another plan.
+        let is_taken = by_grammar.steps().is_some() || matches!(context.pending, Some(Pending::Also { .. }));
+        let is_answer = is_taken && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
+        // Which one `the other one` is the rewriter has from what was said alone.
+        let is_correction = context.pending.is_none()
+            && by_grammar.is_understood()
+            && self.corrected(&wording.tidied, &mut context.clone()).is_some();
         let is_wait = by_grammar.is_understood() && self.is_plain_wait(&wording.words);
-        if is_of_lab || is_strange || is_too_long || is_conditional || is_answer || is_wait {
+        if is_of_lab || is_strange || is_too_long || is_conditional || is_answer || is_correction || is_wait {
             return Reading::Sure;
         }
         // `pour the milk`: where to; `drop it`: nothing is there.
@@ -242,20 +269,23 @@ impl Conversation<'_> {
             if likeliest.context.search.is_none() && way.context.search.is_some() {
                 return false;
             }
-            let is_part = likeliest.beyond(way).is_some() || way.beyond(likeliest).is_some();
-            way.probability >= likeliest.probability * RIVAL && !is_part
+            way.probability >= likeliest.probability * RIVAL && !likeliest.is_part_or_whole(way)
         };
         let rivals = plans.filter(|(way, _)| is_rival(way));
         let mut guesses: Vec<Guess> = Vec::new();
-        for guess in rivals.take(MOST_PROPOSED).map(|(way, steps)| way.context.guess(steps)) {
+        let mut plans: Vec<Vec<Told>> = Vec::new();
+        for (way, steps) in rivals.take(MOST_PROPOSED) {
+            let guess = way.context.guess(steps);
             if guesses.iter().all(|other| other.name != guess.name) {
                 guesses.push(guess);
+                plans.push(way.context.told(steps));
             }
         }
-        if guesses.len() > 1 && guesses.iter().all(|guess| guess.search.is_none()) {
-            let plans: Vec<&[Step]> = guesses.iter().map(|guess| guess.steps.as_slice()).collect();
-            let names = reply::apart(&plans);
-            guesses.iter_mut().zip(names).for_each(|(guess, name)| guess.name = name);
+        let question = if let [only] = guesses.as_slice() {
+            ask::is_it(&only.name)
+        } else {
+            let apart = reply::apart(&plans);
+            guesses.iter_mut().zip(apart.names).for_each(|(guess, name)| guess.name = name);
             // What is called alike nobody can choose between.
             let mut told: Vec<String> = Vec::new();
             guesses.retain(|guess| {
@@ -263,11 +293,11 @@ impl Conversation<'_> {
                 told.push(guess.name.clone());
                 is_new
             });
-        }
-        let names: Vec<&str> = guesses.iter().map(|guess| guess.name.as_str()).collect();
-        let question = match names.as_slice() {
-            [name] => ask::is_it(name),
-            names => ask::which_plan(names),
+            let names: Vec<&str> = guesses.iter().map(|guess| guess.name.as_str()).collect();
+            match names.as_slice() {
+                [_] => ask::is_it(&reply::told_in_words(&plans[0])),
+                names => ask::which_plan(names, &apart.head, &apart.tail),
+            }
         };
         context.pending = Some(Pending::Guess { guesses });
         Some(match likeliest.context.answered.as_str() {
@@ -289,25 +319,44 @@ fn settled(ways: &[Way]) -> Option<Way> {
     (plan.probability >= TO_GUESS && probability >= settled.least()).then_some(settled)
 }
 
-/// A plan that several ways begin with, together likely enough to be carried out, and what is said of how they go on.
-fn begun(ways: &[Way]) -> Option<(Way, Option<String>)> {
+/// The likeliest plan, if it is simply put back, and no other one is nearly as likely.
+fn only_plan(ways: &[Way]) -> Option<&Way> {
+    let mut plans = ways.iter().filter(|way| way.steps().is_some());
+    let likeliest = plans.next().filter(|way| way.probability >= TO_CORRECT && !way.is_lasting())?;
+    let is_rival = |way: &Way| way.probability >= likeliest.probability * RIVAL;
+    (!plans.any(is_rival)).then_some(likeliest)
+}
+
+/// How ways go on from a plan that all of them do.
+struct Left {
+    /// What is said of that.
+    said: String,
+    /// What is offered, where one way is rather meant than others.
+    offer: Option<Guess>,
+}
+
+/// A plan that several ways do, together likely enough to be carried out, and how they go on.
+fn begun(ways: &[Way]) -> Option<(Way, Option<Left>)> {
     ways.iter().find_map(|way| {
-        let longer: Vec<(&Way, String)> = ways.iter().filter_map(|other| Some((other, other.beyond(way)?))).collect();
+        let longer: Vec<_> =
+            ways.iter().filter_map(|other| other.left_after(way).map(|(guess, says)| (other, guess, says))).collect();
         // Probabilities of ways are as their shares of what the rewriter writes.
-        let shares = longer.iter().map(|(one, _)| *one).chain([way]).map(|one| one.probability);
-        let begun = Way { probability: shares.sum(), ..way.clone() };
-        let all: f32 = longer.iter().map(|(one, _)| one.probability).sum();
-        let (likeliest, more) = longer.into_iter().next()?;
+        let all: f32 = longer.iter().map(|(one, ..)| one.probability).sum();
+        let begun = Way { probability: way.probability + all, ..way.clone() };
+        let (likeliest, guess, more) = longer.into_iter().next()?;
         // To look around as well does no harm.
         if likeliest.only_looks() && begun.probability >= begun.least() {
             return Some((Way { probability: begun.probability, ..likeliest.clone() }, None));
         }
         let left = match likeliest.probability > all / 2.0 {
             // Nobody wants a question that they never asked, and what is not to be done is not done.
-            _ if more.contains('?') || more.starts_with("not ") => None,
-            true => Some(format!("I am not sure about {more}: tell me if you want that, too.")),
+            _ if more.iter().any(|one| one.contains('?') || one.starts_with("not ")) => None,
+            true => {
+                let to_do: Vec<String> = more.iter().map(|one| prose::to_do(one)).collect();
+                Some(Left { said: format!("Shall I also {}?", prose::list(&to_do, "and then")), offer: Some(guess) })
+            }
             // Each goes on otherwise.
-            false => Some("I am not sure what else you want: tell me, please.".to_owned()),
+            false => Some(Left { said: "I am not sure what else you want: tell me, please.".to_owned(), offer: None }),
         };
         (begun.probability >= begun.least()).then_some((begun, left))
     })

@@ -167,6 +167,27 @@ impl Conversation<'_> {
         unnamed.next().map(|(said, _)| said.as_str()).filter(|_| unnamed.next().is_none())
     }
 
+    /// Plain requests that forbid nothing, of who forbade nothing: `do not open the cabinet`, of who said that it should stay closed, is to close it.
+    pub(crate) fn without_invented_denial(&self, text: &str, source: &Source) -> String {
+        if source.has_denial {
+            return text.to_owned();
+        }
+        let wishes = &self.lexicon.wishes;
+        let is_to_stay = source.said.iter().any(|word| wishes.stayers.contains(word));
+        let as_wished = |forbidden: &str| {
+            wishes.undoes.iter().filter(|_| is_to_stay).find_map(|(verb, other)| {
+                let thing = forbidden.strip_prefix(verb.as_str())?.strip_prefix(' ')?;
+                Some(format!("{other} {thing}"))
+            })
+        };
+        let meant = |request: &str| match request.strip_prefix("do not ") {
+            Some(forbidden) => as_wished(forbidden),
+            None => Some(request.to_owned()),
+        };
+        let requests: Vec<String> = text.split("; ").filter_map(meant).collect();
+        if requests.is_empty() { text.to_owned() } else { requests.join("; ") }
+    }
+
     /// Plain requests without what they would be done with, where nobody spoke of that, and it is not around: `heat the milk in the microwave`, at
     /// home.
     pub(crate) fn without_means(&self, text: &str, source: &Source) -> String {

@@ -91,7 +91,7 @@ impl Conversation<'_> {
             _ => (question, 0),
         };
         let answer = self.answerer(context, told).answer(question);
-        if matches!(question.kind, QuestionKind::Seeing | QuestionKind::Contents) {
+        if matches!(question.kind, QuestionKind::Seeing | QuestionKind::Contents | QuestionKind::Carried) {
             // What else there is, is no yes or no.
             let listed = question::Question { is_whether: false, ..question.clone() };
             context.list = Some((listed, told + contents::LIST));

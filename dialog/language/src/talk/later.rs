@@ -1,12 +1,16 @@
 //! What comes after the plan under way: the search that it is a part of, the rest of what was said, and what is left of the mission.
 
 use crate::{
-    context::{Context, Pending},
+    context::{Context, Guess, Pending},
     read::{clause::Clause, reader::Reader, tidy},
+    say::ask,
     talk::{condition::trimmed, conversation::Conversation},
     understanding::Understanding,
     words::{lexicon::Small, prose, token},
 };
+
+/// What it says that does at once what it offered.
+const AGREED: &str = "OK.";
 
 impl Conversation<'_> {
     /// `take the hammer and follow me`: once that is done.
@@ -35,8 +39,54 @@ impl Conversation<'_> {
         small.contains(&Small::Follow) && (is_way || length > 1) && reader.is_done()
     }
 
-    /// What is left to do once a plan has ended: the search that it is a part of, or what is next.
+    /// What is left to do once a plan has ended: what was offered besides and agreed to, the search that it is a part of, or what is next.
+    /// What was offered and not answered is then asked once more.
     pub(crate) fn carry_on(&self, context: &mut Context) -> Option<Understanding> {
+        if context.search.is_none()
+            && let Some(guess) = context.agreed.take()
+        {
+            return Some(self.go_as_agreed(guess, context));
+        }
+        let offer = context.pending.take_if(|pending| matches!(pending, Pending::Also { .. }));
+        let next = self.carry_on_with_next(context);
+        let Some(Pending::Also { guess, question, is_asked }) = offer.filter(|_| context.pending.is_none()) else {
+            return next;
+        };
+        let is_asked_now = next.is_none() && !is_asked;
+        context.pending = Some(Pending::Also { guess, question: question.clone(), is_asked: is_asked || is_asked_now });
+        if is_asked_now { Some(ask::confirmation(question)) } else { next }
+    }
+
+    /// Somebody wants what was offered, too: once what is under way has ended.
+    pub(crate) fn agreed_to_more(&self, mut guess: Guess, context: &mut Context) -> Understanding {
+        if !context.is_busy() {
+            return self.go_as_agreed(guess, context);
+        }
+        let reply = format!("OK, {} after that.", guess.name);
+        if guess.steps.is_empty() && guess.search.is_none() {
+            context.later.extend(guess.take_later());
+        } else {
+            context.agreed = Some(guess);
+        }
+        Understanding::answer(reply)
+    }
+
+    fn go_as_agreed(&self, mut guess: Guess, context: &mut Context) -> Understanding {
+        let mut later = std::mem::take(&mut context.later);
+        later.extend(guess.take_later());
+        if !guess.steps.is_empty() {
+            let understanding = self.go_as_guessed(guess, context);
+            return context.keep(later, understanding);
+        }
+        if let Some(search) = guess.search {
+            let understanding = self.plan(search.clauses, search.consent, context);
+            return context.keep(later, understanding);
+        }
+        context.later = later;
+        self.carry_on_with_next(context).unwrap_or_else(|| Understanding::answer(AGREED))
+    }
+
+    fn carry_on_with_next(&self, context: &mut Context) -> Option<Understanding> {
         let later = context.later.clone();
         let mut said = None;
         if let Some(search) = context.search.take() {

@@ -17,7 +17,7 @@ use crate::{
         wording::Wording,
     },
     understanding::{Clarification, Understanding},
-    words::{lexicon::StateWord, token},
+    words::{intent::Intent, lexicon::StateWord, token},
 };
 
 /// How likely ways are at most where the grammar does not read the likeliest: enough to be proposed.
@@ -109,7 +109,7 @@ impl Conversation<'_> {
 
     /// What the rewriter wrote, without what it cannot know, and what else may be meant by that.
     fn edited(&self, text: &str, source: &Source) -> Vec<(Edit, String)> {
-        let text = self.with_rooms_there(text, source);
+        let text = self.without_invented_denial(&self.with_rooms_there(text, source), source);
         let known = |text: &str| self.with_this_room(&self.without_invention(text, source), source);
         let renamed = self.with_things_said(&text, source);
         let first = (if renamed == text { Edit::Kept } else { Edit::Renamed }, known(&renamed));
@@ -155,7 +155,8 @@ impl Conversation<'_> {
 
     fn of_rewriting(&self, text: &str, probability: f32, wording: &Wording<'_>, context: &Context) -> Option<Way> {
         let mut then = context.at_new_utterance();
-        let understanding = match asking(text).as_str() {
+        let in_order = self.with_first_first(text, wording);
+        let understanding = match asking(&in_order).as_str() {
             CANNOT_TELL => return None,
             "none" => Understanding::answer(AGREED),
             talk if is_talk(talk) => self.reply_to_talk(talk, wording),
@@ -185,6 +186,33 @@ impl Conversation<'_> {
             if self.asks_other_state(text, wording) { understanding.without_yes() } else { understanding };
         then.reason = then.reason.replacen(reply::ASKED_TO, reply::UNDERSTOOD_TO, 1);
         Some(Way { understanding, probability, context: then })
+    }
+
+    /// Plain requests, of which the one that was said to be done first stands before the others.
+    fn with_first_first(&self, requests: &str, wording: &Wording<'_>) -> String {
+        let words = &wording.tidied;
+        let cuts = segments::cuts(self.lexicon, words);
+        let Some(first) = segments::done_first(self.lexicon, words, &cuts) else { return requests.to_owned() };
+        let said = self.asked_for(&words[cuts[first.start].start..cuts[first.end - 1].end]);
+        let mut all: Vec<&str> = requests.split("; ").collect();
+        let is_said = |request: &str| {
+            let asked = self.asked_for(&self.wording(request).tidied);
+            asked.iter().any(|intent| said.contains(intent))
+        };
+        let found: Vec<usize> = (0..all.len()).filter(|at| is_said(all[*at])).collect();
+        if let [at] = found[..] {
+            let request = all.remove(at);
+            let after_stop = all.first().is_some_and(|request| *request == "stop");
+            all.insert(usize::from(after_stop), request);
+        }
+        all.join("; ")
+    }
+
+    /// What these words ask for, as the grammar reads them.
+    fn asked_for(&self, words: &[String]) -> Vec<Intent> {
+        let parts = parts::parts(self.lexicon, self.catalog, words);
+        let intent = |part: &Part| if let Part::Clause(clause) = part { Some(clause.intent) } else { None };
+        parts.iter().filter_map(intent).collect()
     }
 
     /// Whether plain words ask for a state by a word whose meaning was not said.

@@ -33,10 +33,14 @@ use crate::{
 
 /// The most legs of one request: an office has fewer viewpoints and doors.
 const MOST_LEGS: u16 = 150;
+/// How likely a thing is at least in the room where it is asked for, before what that says of it counts: where such things usually are says
+/// little of the one that a person has in mind there.
+const AT_HAND: f32 = 0.06;
 
 impl Conversation<'_> {
     /// Goes on with a request: does it, as far as all it names is known, or looks for what is not.
     pub(crate) fn proceed(&self, mut search: Search, context: &mut Context) -> Understanding {
+        self.heed_hint(&mut search.clauses, context);
         let mut planner = self.planner(context.focus.clone());
         planner.may_put_down = search.consent.may_put_down || self.judge.asking == Asking::Never;
         planner.has_looked = !search.looked_m.is_empty();
@@ -130,13 +134,17 @@ impl Conversation<'_> {
         }
         let before = self.scene.robot.room;
         let mut steps: Vec<Step> = close.into_iter().collect();
-        steps.extend(leg.as_ref().map(|leg| self.leg_step(leg, &target, &mut search)));
+        if let Some(leg) = &leg {
+            steps.extend(self.leg_steps(leg, &target, &mut search));
+        }
+        let begins = is_new && search.legs == 0;
         search.legs += 1;
         let said = &target.said;
         let reply = match &leg {
             _ if target.is_hasty => "I look around first.".to_owned(),
             _ if is_new => format!("I have not seen {said} yet, so I look for it."),
-            Some(leg) if leg.room != before => {
+            Some(leg) if leg.room != before && !search.announced.contains(&leg.room) => {
+                search.announced.push(leg.room);
                 format!("I do not see {said} here. I look in the {}.", leg.room.name_in(self.catalog))
             }
             _ => String::new(),
@@ -144,7 +152,11 @@ impl Conversation<'_> {
         if is_new {
             self.remember_start(&steps, context);
         }
-        context.begin_leg(&steps);
+        if begins {
+            context.begin_search(&steps);
+        } else {
+            context.begin_leg(&steps);
+        }
         context.request.clone_from(&search.clauses);
         context.search = Some(search);
         Understanding::Plan { steps, reply }
@@ -234,10 +246,9 @@ impl Conversation<'_> {
         }
         let room = phrase.room.or(phrase.is_here.then_some(self.scene.robot.room));
         let mut target = self.target(saying::said(phrase), classes, room);
-        let focus = Focus::default();
-        let ground = self.ground(&focus);
-        for relation in &phrase.relations {
-            let other = ground.one(&relation.to, &Want::place(Intent::Find, &[], None)).ok();
+        // That it lies on the floor says nothing of the room.
+        for relation in phrase.relations.iter().filter(|relation| !relation.to.is_floor) {
+            let other = self.only_one(&relation.to, None);
             if let Some(room) = other.and_then(|id| self.scene.object(id)).map(|object| object.room) {
                 target.likely_in(room, self.catalog).into_iter().for_each(|likely| *likely *= 10.0);
             } else {
@@ -246,7 +257,29 @@ impl Conversation<'_> {
             }
             target.at = target.at.or(other.filter(|_| relation.kind == RelationKind::Inside));
         }
+        phrase.hints.iter().for_each(|hint| self.heed_place(hint, &mut target));
         Some(target)
+    }
+
+    /// Looks first where somebody thinks that it is.
+    fn heed_place(&self, hint: &Phrase, target: &mut Target) {
+        target.hinted.extend(hint.room.or(hint.is_here.then_some(self.scene.robot.room)));
+        for relation in hint.relations.iter().filter(|relation| !relation.to.is_floor) {
+            let Some(other) = self.only_one(&relation.to, hint.room) else {
+                let rooms = self.habits.by_room(self.catalog, &classes_of(&relation.to));
+                target.likely.iter_mut().zip(rooms).for_each(|(likely, share)| *likely *= share);
+                continue;
+            };
+            target.at = target.at.or(Some(other));
+            target.hinted.extend(self.scene.object(other).map(|object| object.room));
+        }
+    }
+
+    /// The one thing that it means, in that room if one was said.
+    fn only_one(&self, phrase: &Phrase, room: Option<RoomId>) -> Option<ObjectId> {
+        let focus = Focus::default();
+        let phrase = Phrase { room: phrase.room.or(room), ..phrase.clone() };
+        self.ground(&focus).one(&phrase, &Want::place(Intent::Find, &[], None)).ok()
     }
 
     pub(crate) fn classes(&self) -> impl Iterator<Item = (ClassId, &ObjectClass)> {
@@ -265,7 +298,10 @@ impl Conversation<'_> {
     pub(crate) fn target(&self, said: String, classes: Vec<ClassId>, room: Option<RoomId>) -> Target {
         let likely = self.habits.by_room(self.catalog, &classes);
         let rooms = room.map_or_else(|| self.catalog.rooms().ids().collect(), |room| vec![room]);
-        Target { said, classes, rooms, likely, at: None, is_hasty: false, from: self.scene.robot.room }
+        let from = self.scene.robot.room;
+        let mut target = Target { said, classes, rooms, likely, at: None, hinted: Vec::new(), is_hasty: false, from };
+        target.likely_in(from, self.catalog).into_iter().for_each(|likely| *likely = likely.max(AT_HAND));
+        target
     }
 
     /// `the mug on the desk`, of what was looked for and is part of these steps.

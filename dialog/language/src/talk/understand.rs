@@ -16,14 +16,15 @@ use crate::{
         clause::{self, Clause, Part},
         parts,
         phrase::{Phrase, Place, RelationKind},
-        question, segments, tidy,
+        question, segments, slot, tidy, wish,
     },
     say::{ask, examples, reply},
     stop::{self, Stop, said::Firmness},
     talk::{conversation::Conversation, room_kind, way::Way},
-    understanding::{Asking, Understanding},
+    understanding::{Asking, Step, Understanding},
     words::{
         intent::Intent,
+        lexicon::Small,
         question_kind::QuestionKind,
         spelling,
         token::{self, MAX_CHARS},
@@ -32,6 +33,8 @@ use crate::{
 
 /// What it says when it stops.
 const STOPS: &str = "OK, I stop.";
+/// What it says where something is to stay as it is.
+const LEAVES_AS_IS: &str = "All right, I leave it as it is.";
 /// What stands between two of which one is asked for, and what follows it where there is no second one: `is it hot or what?`
 const OR: &str = "or";
 const NO_SECOND: [&str; 5] = ["what", "not", "no", "?", "something"];
@@ -40,11 +43,12 @@ impl Conversation<'_> {
     pub(crate) fn understand(&self, utterance: &str, context: &mut Context) -> Understanding {
         context.unwatched = None;
         let followed = std::mem::take(&mut context.follows);
+        context.followed = followed;
         if followed && self.lets_go(utterance) {
             context.sureness = 1.0;
             return self.stopped("", context);
         }
-        let (understanding, sureness) = self.understand_surely(utterance, context);
+        let (understanding, sureness) = self.understand_hinted(utterance, context);
         // Who asks for something else is not followed any longer.
         context.follows |=
             followed && !matches!(understanding, Understanding::Plan { .. } | Understanding::Stop { .. });
@@ -62,19 +66,78 @@ impl Conversation<'_> {
             && at.is_some_and(|at| words.get(at + 1).is_some_and(|next| !NO_SECOND.contains(&next.as_str())))
     }
 
-    /// The same with how likely it is what was meant.
+    /// What is asked for, looked for where somebody thinks that it is; with how likely it is what was meant.
+    fn understand_hinted(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
+        match self.without_hint(utterance) {
+            Some((rest, hint)) if rest.is_empty() => match self.hinted(hint, context) {
+                Some(understanding) => (understanding, 1.0),
+                None => self.understand_surely(utterance, context),
+            },
+            Some((rest, hint)) => {
+                context.hint = Some(hint);
+                let understood = self.understand_surely(&rest, context);
+                self.heed_hint_in_question(context);
+                context.hint = None;
+                understood
+            }
+            None => self.understand_surely(utterance, context),
+        }
+    }
+
+    /// The same of what has no hint in it.
     fn understand_surely(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
         if let Some(understanding) = self.chosen_by_name(utterance, context) {
             return (understanding, 1.0);
         }
-        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop, context))
+        // `leave it` leaves what was offered besides, and stops nothing.
+        let declines = |stop: &Stop| {
+            !matches!(stop.firmness, Firmness::Firm)
+                && matches!(context.pending, Some(Pending::Also { .. }))
+                && self.small(&self.lexicon.normalise(utterance).0).contains(&Small::No)
+        };
+        if let Some(stop) = stop::find_stop(utterance).filter(|stop| is_heeded(stop, context) && !declines(stop))
             && (context.is_busy() || !self.is_wait(&self.lexicon.normalise(utterance).0))
         {
             return self
                 .asked_at_rest(&stop, utterance, context)
                 .unwrap_or_else(|| (self.stopped(&stop.rest, context), 1.0));
         }
-        self.understand_whole(utterance, context)
+        self.dropped(utterance, context).unwrap_or_else(|| self.understand_whole(utterance, context))
+    }
+
+    /// `never mind the mug, bring me the plate instead`, of a robot that is at that: it stops, whatever comes of what else is said. A question
+    /// or an answer alone would leave it at what nobody wants any longer.
+    fn dropped(&self, utterance: &str, context: &mut Context) -> Option<(Understanding, f32)> {
+        let is_free = !context.is_busy() || context.must_be_answered();
+        let dropped = stop::find_dropped(utterance).filter(|dropped| !is_free && self.is_at(&dropped.what, context))?;
+        let asks = self.asks_for_anything(&dropped.rest);
+        // `forget it, the red one` asks by what it names.
+        if !asks && self.names_anything(&self.lexicon.normalise(&dropped.rest).0) {
+            return None;
+        }
+        let stopped = self.stopped("", context);
+        if !asks {
+            return Some((stopped, 1.0));
+        }
+        let (then, sureness) = self.understand_whole(&dropped.rest, context);
+        let then = match then {
+            Understanding::Stop { then, .. } => then,
+            then => Some(Box::new(then)),
+        };
+        Some((Understanding::Stop { reply: stopped.reply().to_owned(), then }, sureness))
+    }
+
+    /// Whether what the robot is at is about a thing of these words, or the words name none.
+    fn is_at(&self, what: &str, context: &Context) -> bool {
+        let Some(phrase) = question::named(self.lexicon, &self.lexicon.normalise(what).0) else {
+            return what.is_empty();
+        };
+        let is_named = |other: &Phrase| other.namings.iter().any(|naming| phrase.naming(naming.class).is_some());
+        let is_touched = |step: &Step| {
+            let object = step.object().and_then(|id| self.scene.object(id));
+            object.is_some_and(|object| phrase.naming(object.class).is_some())
+        };
+        context.request.iter().flat_map(slot::named).any(is_named) || context.running.iter().any(is_touched)
     }
 
     /// `that will do, off with it`, to a robot that does nothing: what is asked for beside the stop, said before it or after it.
@@ -107,6 +170,7 @@ impl Conversation<'_> {
         context.search = None;
         context.awaited.clear();
         context.later.clear();
+        context.agreed = None;
         // A reason for it is taken for many things, but it is no question.
         let asks = self.asks_for_anything(rest) || rest.contains('?') && self.is_rewritten_as_request(rest, context);
         let then = asks.then(|| Box::new(self.understand_whole(rest, context).0));
@@ -185,8 +249,9 @@ impl Conversation<'_> {
 
     pub(crate) fn understand_words(&self, words: Vec<String>, context: &mut Context) -> Understanding {
         let parts = parts::parts(self.lexicon, self.catalog, &words);
-        // `why did you stop` asks.
-        if stops(&parts) && question::read(self.lexicon, &words).is_none() {
+        // `why did you stop` asks, and `it should stay there` is of a thing.
+        if stops(&parts) && question::read(self.lexicon, &words).is_none() && !wish::leaves_as_is(self.lexicon, &words)
+        {
             return self.stopped("", context);
         }
         let open = context.pending.clone();
@@ -230,6 +295,9 @@ impl Conversation<'_> {
 
     /// What was said, if it is no answer to a question of the robot's.
     fn fresh(&self, words: &[String], parts: Vec<Part>, context: &mut Context) -> Understanding {
+        if let Some(understanding) = self.corrected(words, context) {
+            return understanding;
+        }
         if let Some(understanding) = self.small_talk(words, context) {
             return understanding;
         }
@@ -310,6 +378,7 @@ impl Conversation<'_> {
             let mentioned = clauses.into_iter().flat_map(|clause| clause.objects).next();
             return match (fragment.or(mentioned), unclear) {
                 _ if is_forbidden => Understanding::answer("All right, I will not do that."),
+                _ if wish::leaves_as_is(self.lexicon, words) => Understanding::answer(LEAVES_AS_IS),
                 (_, Some(words)) if !words.is_empty() => self.unclear(&words),
                 (Some(phrase), _) if words.last().is_some_and(|word| word == "?") || goes_on => {
                     let kind = context.question.filter(|_| goes_on).unwrap_or(QuestionKind::Where);
@@ -382,8 +451,8 @@ impl Conversation<'_> {
 fn is_heeded(stop: &Stop, context: &Context) -> bool {
     match stop.firmness {
         Firmness::Firm => true,
-        Firmness::Weak => context.pending.is_none() && (context.is_busy() || stop.is_plain),
-        Firmness::Dismissal => context.pending.is_none() && (context.is_busy() || context.awaits()),
+        Firmness::Weak => !context.must_be_answered() && (context.is_busy() || stop.is_plain),
+        Firmness::Dismissal => !context.must_be_answered() && (context.is_busy() || context.awaits()),
     }
 }
 

@@ -74,7 +74,7 @@ impl Conversation<'_> {
         for awaited in &mut context.awaited {
             awaited.since_s.get_or_insert(now_s);
         }
-        if context.is_busy() || context.pending.is_some() || !context.later.is_empty() {
+        if context.is_busy() || context.must_be_answered() || !context.later.is_empty() {
             return None;
         }
         let waited_s = |awaited: &Awaited| now_s - awaited.since_s.unwrap_or(now_s);

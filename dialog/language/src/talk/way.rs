@@ -3,7 +3,7 @@
 use cohabit_cdf::{Action, GoToTarget, Verb};
 
 use crate::{
-    context::{Context, Pending, search::Search},
+    context::{Context, Guess, Pending, search::Search},
     read::clause::Clause,
     say::reply,
     understanding::{Clarification, Step, Understanding},
@@ -26,10 +26,17 @@ impl Way {
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         // Where one looks for a thing may differ by what was said of where it is.
         let is_same = match (&self.understanding, &other.understanding) {
-            (Understanding::Plan { .. }, Understanding::Plan { .. }) if self.looks() && other.looks() => true,
+            (Understanding::Plan { .. }, Understanding::Plan { .. })
+                if self.looks() && (other.looks() || other.goes_to_look()) || self.goes_to_look() && other.looks() =>
+            {
+                true
+            }
             (Understanding::Plan { steps: one, .. }, Understanding::Plan { steps: other, .. }) => {
                 let (own, others) = (outcome(one), outcome(other));
-                deeds(one).eq(deeds(other)) || !own.is_empty() && own == others && !self.context.later.is_empty()
+                // Who does something to a thing goes to its room, whether that was said or not.
+                deeds(one).eq(deeds(other))
+                    || touched(one).eq(touched(other))
+                    || !own.is_empty() && own == others && !self.context.later.is_empty()
             }
             (
                 Understanding::Answer { text: one, highlight, .. },
@@ -55,6 +62,12 @@ impl Way {
     /// Whether it begins by looking for something.
     fn looks(&self) -> bool {
         self.context.search.as_ref().is_some_and(Search::is_under_way)
+    }
+
+    /// Whether it goes to a room first, and then looks for something.
+    fn goes_to_look(&self) -> bool {
+        let waits = self.context.search.as_ref().is_some_and(|search| !search.is_under_way());
+        waits && self.steps().is_some_and(|steps| steps.iter().all(|step| goes_to_room(&step.action)))
     }
 
     /// Whether something is to be done, told or known first, rather than that it was not understood or cannot be done.
@@ -95,23 +108,31 @@ impl Way {
         self.steps().is_some_and(|steps| !steps.is_empty() && deeds(steps).eq(deeds(before)))
     }
 
-    /// What it does and another one does not that begins in the same way, in words; nothing, where it does not go on from that one.
-    pub(crate) fn beyond(&self, other: &Self) -> Option<String> {
+    /// What is left of it once another one is done, all of which it does, too: to be done behind that.
+    pub(crate) fn left_after(&self, other: &Self) -> Option<(Guess, Vec<String>)> {
         let (steps, begun) = (self.steps()?, other.steps()?);
         if self.looks() || other.context.search.is_some() {
             return None;
         }
-        let begins = deeds(begun).count();
-        if !deeds(steps).take(begins).eq(deeds(begun)) {
-            return None;
-        }
-        let last = deeds(steps).skip(begins).count();
-        let more = (last > 0).then(|| reply::plan_in_words(&steps[steps.len() - last..]));
-        let sought = self.context.search.as_ref().map(|_| reply::request_in_words(&self.context.request));
         let later = self.context.later.strip_prefix(other.context.later.as_slice())?;
-        let after = sought.iter().chain(later).map(|text| prose::doing(text));
-        let rest: Vec<String> = more.into_iter().chain(after).collect();
-        (!rest.is_empty()).then(|| prose::list(&rest, "and then"))
+        let left = left_of(steps, begun)?;
+        let mut says: Vec<String> = left.iter().map(|step| step.says.clone()).collect();
+        says.dedup();
+        let request = self.context.search.as_ref().map(|_| &self.context.request).into_iter().flatten();
+        let sought = request.map(|clause| reply::request_in_words(std::slice::from_ref(clause)));
+        let after = sought.filter(|text| !text.is_empty()).chain(later.iter().cloned());
+        says.extend(after.map(|text| prose::doing(&text)));
+        let guess = Context { later: later.to_vec(), ..self.context.clone() }.guess(&left);
+        (!says.is_empty()).then(|| (guess.called(prose::list(&says, "and then")), says))
+    }
+
+    /// Whether it is a part of another one, or has it as a part of its own.
+    pub(crate) fn is_part_or_whole(&self, other: &Self) -> bool {
+        let goes_on = |one: &Self, other: &Self| match (&one.context.search, &other.context.search) {
+            (Some(own), Some(others)) => one.looks() && other.looks() && own.goes_on_from(others),
+            _ => one.left_after(other).is_some(),
+        };
+        goes_on(self, other) || goes_on(other, self)
     }
 
     pub(crate) const fn stops(&self) -> bool {
@@ -189,6 +210,28 @@ fn outcome(steps: &[Step]) -> Vec<&Action> {
     done
 }
 
+/// The steps that are left once others are done: those behind them, or, where they lie before or between them, what touches nothing else.
+fn left_of(steps: &[Step], begun: &[Step]) -> Option<Vec<Step>> {
+    let begins = deeds(begun).count();
+    if deeds(steps).take(begins).eq(deeds(begun)) {
+        let last = deeds(steps).skip(begins).count();
+        return Some(steps[steps.len() - last..].to_vec());
+    }
+    let mut wanted = deeds(begun).peekable();
+    let mut left: Vec<Step> = Vec::new();
+    for step in steps {
+        if wanted.next_if(|action| **action == step.action).is_none() && !matches!(step.action, Action::GoTo { .. }) {
+            left.push(step.clone());
+        }
+    }
+    let is_apart = |step: &Step| {
+        let is_of_itself =
+            matches!(step.action, Action::Interact { verb: Verb::Open | Verb::Close | Verb::Toggle, .. });
+        is_of_itself && begun.iter().all(|other| other.object() != step.object())
+    };
+    (wanted.peek().is_none() && !left.is_empty() && left.iter().all(is_apart)).then_some(left)
+}
+
 /// What these steps come to: who goes to a thing and then takes it, takes it.
 fn deeds(steps: &[Step]) -> impl Iterator<Item = &Action> {
     let is_on_the_way = |at: usize| match steps[at].action {
@@ -198,6 +241,23 @@ fn deeds(steps: &[Step]) -> impl Iterator<Item = &Action> {
         _ => false,
     };
     (0..steps.len()).filter(move |at| !is_on_the_way(*at)).map(|at| &steps[at].action)
+}
+
+/// The same without rooms that are only gone to on the way to a thing.
+fn touched(steps: &[Step]) -> impl Iterator<Item = &Action> {
+    let is_of_thing =
+        |action: &Action| matches!(action, Action::PickUp { .. } | Action::Place { .. } | Action::Interact { .. });
+    let own: Vec<&Action> = deeds(steps).collect();
+    let is_on_the_way = |at: usize| {
+        let next = own[at..].iter().find(|action| !goes_to_room(action));
+        goes_to_room(own[at]) && next.is_some_and(|action| is_of_thing(action))
+    };
+    let kept: Vec<&Action> = (0..own.len()).filter(|at| !is_on_the_way(*at)).map(|at| own[at]).collect();
+    kept.into_iter()
+}
+
+const fn goes_to_room(action: &Action) -> bool {
+    matches!(action, Action::GoTo { target: GoToTarget::Room(_) | GoToTarget::Viewpoint(..) })
 }
 
 fn without_yes_or_no(text: &str) -> String {

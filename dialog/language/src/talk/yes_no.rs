@@ -41,10 +41,17 @@ impl Conversation<'_> {
         let others: Vec<&[String]> = sentences.iter().filter(requests).copied().collect();
         let does_ask = question::read(self.lexicon, asked).is_some_and(|one| one.kind != QuestionKind::Unknown);
         if others.is_empty() {
-            let parts = || parts::parts(self.lexicon, self.catalog, words);
-            // What is a question anyway is read with what was said before it.
-            let is_safe = does_ask && !parts().iter().any(|part| matches!(part, Part::Clause(_)));
-            return (!is_safe).then(|| self.whether(asked, context));
+            let parts = parts::parts(self.lexicon, self.catalog, words);
+            let is_safe = does_ask && !parts.iter().any(|part| matches!(part, Part::Clause(_)));
+            // What is a question anyway is read with what was said before it, where it begins with that.
+            if is_safe && (at == 0 || question::read(self.lexicon, words).is_some()) {
+                return None;
+            }
+            // `Iced coffee for the boss! Is it cold?` asks about what was handled, `the red mug. Is it cold?` about that.
+            if let Some(named) = self.named_alone(&parts, context) {
+                context.focus.mention(named);
+            }
+            return Some(self.whether(asked, context));
         }
         // `is the mug empty? if so, fill it` is told by what comes after it.
         let is_condition = |sentence: &&&[String]| self.lexicon.conditions.longest(sentence).is_some();
@@ -58,6 +65,14 @@ impl Conversation<'_> {
             Understanding::Answer { text, .. } => then.after(&text),
             _ => then,
         })
+    }
+
+    /// What was named before a question and nothing said of it, where that is known.
+    fn named_alone(&self, parts: &[Part], context: &Context) -> Option<ObjectId> {
+        let Some(Part::Fragment(phrase)) = parts.first() else { return None };
+        let is_named = !phrase.namings.is_empty() && phrase.unknown.is_empty();
+        let found = is_named.then(|| self.ground(&context.focus).one(phrase, &Want::place(Intent::Find, &[], None)));
+        found?.ok()
     }
 
     /// Whether what is asked is so.

@@ -52,9 +52,12 @@ struct WordFile {
     hand_words: Words,
     motion_spare: Words,
     reports: Words,
+    corrections: Words,
+    exits: Words,
     tells: Words,
     conditions: Words,
     undone: Words,
+    beforehand: Words,
     titles: Words,
     pronouns: BTreeMap<Pronoun, Vec<String>>,
     prepositions: BTreeMap<Preposition, Vec<String>>,
@@ -72,9 +75,12 @@ struct WordFile {
     yes: Words,
     no: Words,
     neither: Words,
+    more: Words,
     unsure: Words,
     search: Words,
     any: Words,
+    longer: Words,
+    shorter: Words,
     hello: Words,
     thanks: Words,
     again: Words,
@@ -148,6 +154,7 @@ impl Lexicon {
             chatter: parse(include_str!("../../data/chatter.toml")),
             ifs: parse(include_str!("../../data/conditions.toml")),
             waiting: parse(include_str!("../../data/waiting.toml")),
+            hints: parse(include_str!("../../data/hints.toml")),
             yes_no: parse(include_str!("../../data/yes_no.toml")),
             ..Self::default()
         };
@@ -189,9 +196,12 @@ impl Lexicon {
             (&mut self.hand_words, &file.hand_words),
             (&mut self.motion_spare, &file.motion_spare),
             (&mut self.reports, &file.reports),
+            (&mut self.corrections, &file.corrections),
+            (&mut self.exits, &file.exits),
             (&mut self.tells, &file.tells),
             (&mut self.conditions, &file.conditions),
             (&mut self.undone, &file.undone),
+            (&mut self.beforehand, &file.beforehand),
             (&mut self.titles, &file.titles),
         ];
         for (table, entry) in plain {
@@ -251,9 +261,12 @@ impl Lexicon {
             (Small::Yes, &file.yes),
             (Small::No, &file.no),
             (Small::Neither, &file.neither),
+            (Small::More, &file.more),
             (Small::Unsure, &file.unsure),
             (Small::Search, &file.search),
             (Small::Any, &file.any),
+            (Small::Longer, &file.longer),
+            (Small::Shorter, &file.shorter),
             (Small::Hello, &file.hello),
             (Small::Thanks, &file.thanks),
             (Small::Again, &file.again),
@@ -360,6 +373,7 @@ impl Lexicon {
             &self.reports,
             &self.tells,
             &self.undone,
+            &self.beforehand,
             &self.titles,
         ] {
             table.words().for_each(&mut learn);
@@ -387,7 +401,7 @@ impl Lexicon {
         self.wishes.asides.words().chain(self.wishes.to_dry.words()).chain(&self.wishes.movers).for_each(&mut learn);
         self.kinds.iter().for_each(&mut learn);
         self.talk.words().chain(self.people.words()).for_each(|word| vocabulary.learn_talk(word));
-        self.chat.words().for_each(|word| vocabulary.learn_plain(word));
+        self.chat.words().chain(&self.ifs.negations).for_each(|word| vocabulary.learn_plain(word));
         self.verb_heads
             .iter()
             .filter(|verb| !self.is_noun(verb))

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::words::{
     intent::Intent,
-    lists::{Chatter, Conditions, Fillers, TalkReply, WaitingWords, Wishes, YesNo},
+    lists::{Chatter, Conditions, Fillers, HintWords, TalkReply, WaitingWords, Wishes, YesNo},
     misheard::Misheard,
     question_kind::{QuestionKind, Shape},
     sound::Sounding,
@@ -103,7 +103,7 @@ impl Preposition {
     }
 }
 
-/// Which of several, by where they are.
+/// Which of several, by where they are and how large.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Side {
@@ -115,6 +115,13 @@ pub(crate) enum Side {
     Farthest,
     Biggest,
     Smallest,
+    Tallest,
+    Longest,
+    Shortest,
+    Heaviest,
+    Lightest,
+    Upper,
+    Lower,
     Middle,
     Other,
 }
@@ -148,10 +155,15 @@ pub(crate) enum Small {
     Yes,
     No,
     Neither,
+    /// What is offered besides is wanted, too.
+    More,
     Unsure,
     /// Look for it.
     Search,
     Any,
+    /// Of several plans, the one that does most, and the one that does least.
+    Longer,
+    Shorter,
     Hello,
     Thanks,
     Again,
@@ -197,11 +209,17 @@ pub(crate) struct Lexicon {
     pub(crate) hand_words: PhraseTable<()>,
     pub(crate) motion_spare: PhraseTable<()>,
     pub(crate) reports: PhraseTable<()>,
+    /// Before or after what was meant, where another thing was taken.
+    pub(crate) corrections: PhraseTable<()>,
+    /// After what is done to a door by who goes out by it.
+    pub(crate) exits: PhraseTable<()>,
     /// Before what is to be done if what was asked about is so, or if it is not.
     pub(crate) conditions: PhraseTable<()>,
     /// `show me`, before `how many mugs there are`.
     pub(crate) tells: PhraseTable<()>,
     pub(crate) undone: PhraseTable<()>,
+    /// Before or after a request that is carried out before those that were said before it.
+    pub(crate) beforehand: PhraseTable<()>,
     pub(crate) titles: PhraseTable<()>,
     pub(crate) pronouns: PhraseTable<Pronoun>,
     pub(crate) prepositions: PhraseTable<Preposition>,
@@ -260,6 +278,7 @@ pub(crate) struct Lexicon {
     pub(crate) chatter: Chatter,
     pub(crate) ifs: Conditions,
     pub(crate) waiting: WaitingWords,
+    pub(crate) hints: HintWords,
     pub(crate) yes_no: YesNo,
     /// How the words sound that may be taken for others.
     pub(crate) sounds: Sounding,

@@ -43,6 +43,7 @@ pub(crate) struct Fillers {
     pub(crate) numbered: BTreeSet<String>,
     pub(crate) pauses: PhraseTable<()>,
     pub(crate) adverbs: BTreeSet<String>,
+    pub(crate) besides: PhraseTable<()>,
 }
 
 /// The words of waiting: `data/waiting.toml` says what each list is.
@@ -60,6 +61,24 @@ pub(crate) struct WaitingWords {
     pub(crate) joints: PhraseTable<()>,
 }
 
+/// The words of where somebody thinks that something is: `data/hints.toml` says what each list is.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct HintWords {
+    pub(crate) guesses: PhraseTable<()>,
+    pub(crate) between: PhraseTable<()>,
+    pub(crate) subjects: PhraseTable<()>,
+    pub(crate) subjects_plainly: PhraseTable<()>,
+    pub(crate) plainly: PhraseTable<()>,
+    pub(crate) supposedly: PhraseTable<()>,
+    pub(crate) owed: PhraseTable<()>,
+    pub(crate) persons: PhraseTable<()>,
+    pub(crate) kept: PhraseTable<()>,
+    pub(crate) things: PhraseTable<()>,
+    pub(crate) either: PhraseTable<()>,
+    pub(crate) not_after: BTreeSet<String>,
+}
+
 /// The words of wishing: `data/wishes.toml` says what each list is.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -67,6 +86,8 @@ pub(crate) struct Wishes {
     pub(crate) wishers: BTreeSet<String>,
     pub(crate) wishes: BTreeSet<String>,
     pub(crate) musts: PhraseTable<()>,
+    pub(crate) stayers: BTreeSet<String>,
+    pub(crate) as_is: PhraseTable<()>,
     pub(crate) makers: BTreeSet<String>,
     pub(crate) orders: BTreeSet<String>,
     pub(crate) measures: BTreeSet<String>,
@@ -106,6 +127,7 @@ pub(crate) struct YesNo {
     sound: PhraseTable<()>,
     unsound: PhraseTable<()>,
     pub(crate) done: PhraseTable<()>,
+    meals: PhraseTable<()>,
     floor: BTreeSet<String>,
     pub(crate) cereals: BTreeSet<String>,
 }
@@ -134,6 +156,13 @@ impl YesNo {
     /// Whether words end by saying that something has come to its end.
     pub(crate) fn says_done(&self, words: &[String]) -> bool {
         self.is_last_of(words, &self.done)
+    }
+
+    /// Whether words say that a meal is done, and nothing else: `dinner ready yet`.
+    pub(crate) fn says_meal_is_done(&self, words: &[String]) -> bool {
+        let is_done =
+            |rest: &[String]| self.done.longest(rest).is_some_and(|(length, ())| self.is_filler(&rest[length..]));
+        self.meals.longest(words).is_some_and(|(length, ())| is_done(&words[length..]))
     }
 
     /// Whether words end by saying that something works as it should, or that it does not.

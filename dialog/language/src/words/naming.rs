@@ -72,9 +72,15 @@ impl Lexicon {
         }
     }
 
-    /// `that box`: the cereal box too, though other things are called just that. Only what can be carried is meant so.
+    /// `that box`: the cereal box too, though other things are called just that; `the cabinet`: one for medicine. Only what can be carried is
+    /// meant so, and what things are kept in.
     fn add_heads(&mut self, catalog: &Catalog) {
-        for class in (0_u16..).map(ClassId).take(catalog.classes().len()).filter(|class| self.carried.contains(class)) {
+        let stores = |class: &ObjectClass| {
+            class.receptacle.as_ref().is_some_and(|kind| kind.enclosed) && !class.has(Property::Toggleable)
+        };
+        let is_meant = |class: &ClassId| self.carried.contains(class) || stores(catalog.class(*class));
+        let meant: Vec<ClassId> = (0_u16..).map(ClassId).take(catalog.classes().len()).filter(is_meant).collect();
+        for class in meant {
             let words = self.replaced(&token::words(&catalog.class(class).name));
             let [_, .., head] = words.as_slice() else { continue };
             let is_name = self.classes.exact(std::slice::from_ref(head)).is_some();

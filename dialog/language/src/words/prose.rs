@@ -96,8 +96,23 @@ pub(crate) fn sentence(text: &str) -> String {
 
 /// What a request asks for, as a part of a sentence: `pour the milk. is it full?` → `pouring the milk and then answering "is it full?"`.
 pub(crate) fn doing(request: &str) -> String {
-    let parts: Vec<String> = request.split(". ").map(doing_one).collect();
-    list(&parts, "and then")
+    list(&doings(request), "and then")
+}
+
+/// The same, each deed by itself.
+pub(crate) fn doings(request: &str) -> Vec<String> {
+    let of_part = |part: &str| -> Vec<String> {
+        if is_quoted(part) { vec![doing_one(part)] } else { part.split(" and then ").map(doing_one).collect() }
+    };
+    request.split(". ").flat_map(of_part).collect()
+}
+
+/// Whether it is told in its own words: a question, a condition, or what is no request by itself.
+fn is_quoted(request: &str) -> bool {
+    let verb = request.split_once(' ').map_or(request, |(verb, _)| verb);
+    request.ends_with('?')
+        || matches!(verb, "if" | "when" | "once" | "unless" | "until" | "wait")
+        || verb.ends_with([',', ':'])
 }
 
 fn doing_one(request: &str) -> String {
@@ -108,11 +123,45 @@ fn doing_one(request: &str) -> String {
         return format!("not {}", doing_one(request));
     }
     let (verb, rest) = request.split_once(' ').unwrap_or((request, ""));
-    // A condition, or what is no request by itself.
-    if matches!(verb, "if" | "when" | "once" | "unless" | "until" | "wait") || verb.ends_with([',', ':']) {
+    if is_quoted(request) {
         return format!("\"{request}\"");
     }
     format!("{} {rest}", gerund(verb)).trim_end().to_owned()
+}
+
+/// What is done, as what is to be done: `closing the fridge` → `close the fridge`.
+pub(crate) fn to_do(doing: &str) -> String {
+    const IRREGULAR: [(&str, &str); 24] = [
+        ("closing", "close"),
+        ("coming", "come"),
+        ("cutting", "cut"),
+        ("examining", "examine"),
+        ("firing", "fire"),
+        ("freezing", "freeze"),
+        ("getting", "get"),
+        ("giving", "give"),
+        ("leaving", "leave"),
+        ("making", "make"),
+        ("moving", "move"),
+        ("placing", "place"),
+        ("putting", "put"),
+        ("removing", "remove"),
+        ("rinsing", "rinse"),
+        ("scanning", "scan"),
+        ("setting", "set"),
+        ("shutting", "shut"),
+        ("stopping", "stop"),
+        ("storing", "store"),
+        ("swapping", "swap"),
+        ("taking", "take"),
+        ("using", "use"),
+        ("wiping", "wipe"),
+    ];
+    let (verb, rest) = doing.split_once(' ').unwrap_or((doing, ""));
+    let lower = verb.to_lowercase();
+    let irregular = IRREGULAR.iter().find(|(done, _)| *done == lower).map(|(_, plain)| *plain);
+    let plain = irregular.or_else(|| lower.strip_suffix("ing")).unwrap_or(verb);
+    format!("{plain} {rest}").trim_end().to_owned()
 }
 
 /// `put` → `putting`, `close` → `closing`.
@@ -151,7 +200,17 @@ mod tests {
         check("close the fridge. wash the mug", "closing the fridge and then washing the mug");
         check("do not open the fridge", "not opening the fridge");
         check("go back", "going back");
+        check("clean the cup and then fill it", "cleaning the cup and then filling it");
         check("is the laser on?", "answering \"is the laser on?\"");
         check("if the mug is dirty, wash it", "\"if the mug is dirty, wash it\"");
+    }
+
+    #[test]
+    fn what_is_done_is_told_as_what_is_to_be_done() {
+        let check = |doing: &str, plain: &str| assert_eq!(to_do(doing), plain);
+        check("closing the fridge", "close the fridge");
+        check("putting the mug on the desk", "put the mug on the desk");
+        check("filling it", "fill it");
+        check("looking around", "look around");
     }
 }

@@ -13,6 +13,8 @@ pub(crate) enum QuestionKind {
     Robot,
     Where,
     Abilities,
+    /// What there is that it could carry.
+    Carried,
     Doing,
     /// Whether it has done what it was told.
     Finished,
@@ -63,6 +65,8 @@ pub(crate) enum QuestionKind {
     People,
     /// Which rooms there are.
     Rooms,
+    /// How many rooms there are.
+    RoomCount,
 }
 
 impl QuestionKind {
@@ -79,6 +83,7 @@ impl QuestionKind {
                 | Self::Time
                 | Self::People
                 | Self::Rooms
+                | Self::RoomCount
         )
     }
 }
