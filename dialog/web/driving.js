@@ -30,8 +30,12 @@ const MOVES = {
   KeyR: ["pitch", 1], PageUp: ["pitch", 1],
   KeyF: ["pitch", -1], PageDown: ["pitch", -1],
 };
-/** The keys of what is offered, the most obvious first; some deeds have their own, lest they be done by mistake. */
-const OFFER_KEYS = ["E", "Q", "X", "C", "Z"];
+/**
+ * The keys of what is offered, the most obvious first; some deeds have their own, lest they be done by mistake. They are found by where
+ * they lie, too, so they are some that are labelled alike on German and French keyboards: the key that turns to the left is labelled Q on
+ * French ones.
+ */
+const OFFER_KEYS = ["E", "X", "C", "G", "B"];
 const OWN_KEYS = { throw: "T", scan: "V" };
 
 let bodies = [];

@@ -2,7 +2,7 @@
 
 import { byId, calm, capitalised, drawn, element, narrow } from "./dom.js";
 import { floor } from "./floor.js";
-import { endDoing, input, offerRoom } from "./talk.js";
+import { endDoing, input, offerRoom, robotNow } from "./talk.js";
 import { language, text } from "./texts.js";
 
 let goalsShown = "";
@@ -14,7 +14,7 @@ export function takeState(state) {
   window.cohabit.state = state;
   byId("chat").removeAttribute("aria-busy");
   showScore(state.score);
-  showRobot(state.robot);
+  showRobot(state);
   floor.follow(state.robot);
   if (state.robot) offerRoom(floor.plan, state.robot.room);
   floor.showOthers(state.others);
@@ -23,13 +23,16 @@ export function takeState(state) {
   showEnding(state);
 }
 
-function showRobot(robot) {
-  const room = robot?.room_name ?? "–";
-  const holding = robot?.holding ?? text("holds_nothing");
-  byId("room").textContent = capitalised(room);
+/** Where the robot is that is spoken with, and what it holds; of several, which one it is. */
+function showRobot({ robot, others }) {
+  const named = robotNow();
+  const shown = others?.find(({ body }) => body === named?.body) ?? robot;
+  const room = shown?.room_name ?? "–";
+  const holding = shown?.holding ?? text("holds_nothing");
+  byId("room").textContent = named ? `${named.name}: ${room}` : capitalised(room);
   byId("holding").textContent = capitalised(holding);
-  byId("holding").lang = robot?.holding ? "en" : language;
-  byId("holding").classList.toggle("none", !robot?.holding);
+  byId("holding").lang = shown?.holding ? "en" : language;
+  byId("holding").classList.toggle("none", !shown?.holding);
   byId("robot-line").textContent = robot ? text("robot_line", { room, holding }) : "";
   document.body.classList.toggle("busy", Boolean(robot?.busy));
 }

@@ -30,8 +30,30 @@ function recallKey() {
   }
 }
 
+/** What lets this page into its session. */
+const token = new URLSearchParams(location.search).get("token");
+
+/**
+ * Keeps what somebody chose for the pages of this session: who plays the next one, perhaps at the same machine, begins without it. A
+ * browser may refuse to keep anything.
+ */
+export function keepChoice(name, value) {
+  try {
+    localStorage.setItem(name, JSON.stringify({ of: token, value }));
+  } catch {}
+}
+
+/** What was kept so; nothing, if it was chosen in another session. */
+export function keptChoice(name) {
+  try {
+    const kept = JSON.parse(localStorage.getItem(name));
+    return kept?.of === token ? kept.value : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
 function socketAddress() {
-  const token = new URLSearchParams(location.search).get("token");
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const parameters = new URLSearchParams({ visitor: KEY, ...(token !== null && { token }) });
   return `${scheme}://${location.host}/ws?${parameters}`;

@@ -20,6 +20,12 @@ let visitor = 0;
 /** What the robots are called, by their bodies; empty where there is but one. */
 let robotNames = new Map();
 
+/** The body that this conversation is with, of several robots: the one of which something was said last. */
+let talkedWith = null;
+
+/** The robot that is spoken with, by its body and name; nothing where there is but one. */
+export const robotNow = () => (robotNames.has(talkedWith) ? { body: talkedWith, name: robotNames.get(talkedWith) } : null);
+
 export function takeYou(you) {
   ({ visitor } = you);
 }
@@ -28,6 +34,7 @@ export function takeYou(you) {
 export function meet(robots) {
   robotNames = new Map(robots.length > 1 ? robots.map(({ body, name }) => [body, capitalised(name)]) : []);
   const named = [...robotNames.values()];
+  if (!robotNames.has(talkedWith)) talkedWith = robotNames.keys().next().value ?? null;
   byId("called").textContent = named.length ? words("call_by_name", { names: named.join(", ") }) : "";
 }
 
@@ -54,7 +61,11 @@ function speakerOf({ from, body, name, visitor: by }) {
   return body === undefined ? "" : robot ?? words("body_number", { number: body });
 }
 
+/** Whether lines that are told again are ones that this page did not know, as when it is loaded. */
+let isNew = true;
+
 export function clearChat() {
+  isNew = said.length === 0;
   log.setAttribute("aria-busy", "true");
   log.replaceChildren();
   byId("trail").replaceChildren();
@@ -67,6 +78,7 @@ export function takeLine(line) {
   const atEnd = log.scrollHeight - log.scrollTop - log.clientHeight < NEAR_END_PX;
   const replayed = log.hasAttribute("aria-busy");
   if (line.from !== "game") closeQuestions(line);
+  if (robotNames.has(line.body)) talkedWith = line.body;
   const bubble = lineOf(line);
   const speaker = line.from + speakerOf(line);
   if (speaker === lastSpeaker) bubble.classList.add("follows");
@@ -75,7 +87,7 @@ export function takeLine(line) {
   log.append(bubble);
   if (line.from !== "game") input.placeholder = log.querySelector(OPEN_QUESTION) ? words("answer_robot") : words("tell_robot");
   if (isMine(line)) {
-    remember(line.text);
+    if (isNew || !replayed) remember(line.text);
     byId("chips").hidden = true;
   }
   if (atEnd || replayed || isMine(line)) toNewest();

@@ -2,7 +2,7 @@
 
 import { byId, capitalised, drawn, element } from "./dom.js";
 import { floor } from "./floor.js";
-import { send, showLink } from "./socket.js";
+import { keepChoice, keptChoice, send, showLink } from "./socket.js";
 import { hearThrough } from "./sound.js";
 import { language, text } from "./texts.js";
 
@@ -13,6 +13,7 @@ export const view = byId("view");
 const picture = view.getContext("2d", { alpha: false });
 let waiting = null;
 let drawing = false;
+/** Whether the session knows of this connection that a picture was seen by it. */
 let told = false;
 let drawnAt = [];
 
@@ -97,6 +98,8 @@ let seenTimer = 0;
 
 export function buildViews(all) {
   views = all;
+  // To the session this is another page each time that it connects.
+  told = false;
   const icon = (path) => drawn("svg", { viewBox: "0 0 20 20", "aria-hidden": "true" }, drawn("path", { d: path }));
   byId("views-main").replaceChildren(...views.filter(({ camera }) => camera in MAIN_VIEWS).map((view) => {
     const button = element("button", "view-button");
@@ -114,12 +117,12 @@ export function buildViews(all) {
   byId("views-more").replaceChildren(title, ...others.map(({ camera, name }) => new Option(capitalised(name), camera)));
   byId("views-more").hidden = !others.length;
   byId("views").hidden = views.length < 2;
-  const wanted = looking?.camera ?? recallView();
+  const wanted = looking?.camera ?? keptChoice(REMEMBERED);
   looking = null;
   lookThrough(views.find(({ camera }) => camera === wanted) ?? views[0]);
 }
 
-/** Shows the frames of a view; the next page begins with it if it was chosen. */
+/** Shows the frames of a view; the next page of the session begins with it if it was chosen. */
 export function lookThrough(view, chosen = true) {
   if (!view || view === looking) return;
   const first = looking === null;
@@ -137,7 +140,7 @@ export function lookThrough(view, chosen = true) {
   hideSeen();
   byId("marks").replaceChildren();
   if (!first) {
-    if (chosen) rememberView(view.camera);
+    if (chosen) keepChoice(REMEMBERED, view.camera);
     byId("seen").textContent = nameOf(view);
     byId("seen").lang = view.name in NAMES ? language : "en";
   }
@@ -152,21 +155,6 @@ export function lookThroughCamera(camera) {
 }
 
 export const isLookingThrough = (camera) => looking?.camera === camera;
-
-/** A browser may refuse to keep anything; the view is then not remembered. */
-function rememberView(camera) {
-  try {
-    localStorage.setItem(REMEMBERED, camera);
-  } catch {}
-}
-
-function recallView() {
-  try {
-    return localStorage.getItem(REMEMBERED);
-  } catch {
-    return null;
-  }
-}
 
 byId("views-more").addEventListener("change", ({ target }) => lookThrough(views.find(({ camera }) => camera === target.value)));
 

@@ -1,7 +1,7 @@
 // Voice: what a person says goes to the session as sound, what robots say comes back as sound, and all of it can be read.
 
 import { byId, toast } from "./dom.js";
-import { send, sendSound } from "./socket.js";
+import { keepChoice, keptChoice, send, sendSound } from "./socket.js";
 import { audio } from "./sound.js";
 import { text as words } from "./texts.js";
 
@@ -394,9 +394,7 @@ export function speakLine({ from, text, turn }) {
 
 function speakAloud(on) {
   settings = { ...settings, aloud: on };
-  try {
-    localStorage.setItem(REMEMBERED, JSON.stringify(settings));
-  } catch {}
+  keepChoice(REMEMBERED, settings);
   send({ type: "aloud", on });
   if (!on) takeHush({ saying: hushed });
   show();
@@ -404,11 +402,8 @@ function speakAloud(on) {
 
 /** A browser may refuse to keep anything; robots are then silent until somebody speaks to them. */
 function recall() {
-  try {
-    const { aloud } = JSON.parse(localStorage.getItem(REMEMBERED)) ?? {};
-    if (typeof aloud === "boolean") return { aloud };
-  } catch {}
-  return { aloud: null };
+  const aloud = keptChoice(REMEMBERED)?.aloud;
+  return { aloud: typeof aloud === "boolean" ? aloud : null };
 }
 
 // ---------------------------------------------------------------------------------------------- keys and buttons

@@ -374,8 +374,10 @@ function showDoing() {
 function takeState(state) {
   window.cohabit.state = state;
   const { robot, others, notes, goals } = state;
-  byId("room").textContent = capitalised(robot?.room_name ?? "–");
-  byId("holding").textContent = capitalised(robot?.holding ?? "nothing");
+  // Of several, those of the one that is decided about.
+  const meant = others.find(({ body }) => body === robotNow()) ?? robot;
+  byId("room").textContent = capitalised(meant?.room_name ?? "–");
+  byId("holding").textContent = capitalised(meant?.holding ?? "nothing");
   const met = goals.filter((goal) => goal.met).length;
   const open = goals.filter((goal) => !goal.met && !goal.hidden).map((goal) => goal.text);
   setText("goals", goals.length ? [`${met} of ${goals.length}`, ...open].join(" · ") : "None");

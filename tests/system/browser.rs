@@ -52,12 +52,58 @@ fn a_person_opens_the_page_types_and_sees_the_robot_move() {
     tab.evaluate(click).unwrap();
     tab.wait_until("window.cohabit.seen === 'robot'").unwrap();
 
+    // After a lost connection it is a page with a picture again, and recalls each line once.
+    let press = |key: &str| {
+        let event = format!("new KeyboardEvent('keydown', {{ key: '{key}' }})");
+        format!("document.querySelector('#chat-input').dispatchEvent({event})")
+    };
+    let said = "document.querySelectorAll('#chat .from-person').length";
+    for (number, line) in (2..).zip(["what do you see?", "where are you?"]) {
+        let say = format!(
+            "document.querySelector('#chat-input').value = '{line}'; \
+             document.querySelector('#composer').requestSubmit();"
+        );
+        tab.evaluate(&say).unwrap();
+        tab.wait_until(&format!("{said} === {number}")).unwrap();
+    }
+    let watch = "window.sent = []; const own = WebSocket.prototype.send; \
+        WebSocket.prototype.send = function (data) { \
+        window.sent.push(String(data)); window.socket = this; return own.call(this, data); };";
+    tab.evaluate(watch).unwrap();
+    tab.evaluate("document.querySelector('[data-camera=\"eyes/0\"]').click()").unwrap();
+    tab.wait_until("window.socket !== undefined").unwrap();
+    tab.evaluate("window.sent = []; window.socket.close()").unwrap();
+    tab.wait_until("window.sent.some((message) => message.includes('\"shown\"'))").unwrap();
+    tab.wait_until(&format!("!document.querySelector('#chat').hasAttribute('aria-busy') && {said} === 3")).unwrap();
+    for _ in 0..4 {
+        tab.evaluate(&press("ArrowUp")).unwrap();
+    }
+    let typed = "document.querySelector('#chat-input').value";
+    assert_eq!(tab.evaluate(typed).unwrap(), json!("go to the main office"));
+    tab.evaluate(&press("ArrowDown")).unwrap();
+    assert_eq!(tab.evaluate(typed).unwrap(), json!("what do you see?"));
+    tab.evaluate("document.querySelector('#chat-input').value = ''").unwrap();
+    tab.evaluate("document.querySelector('[data-camera=\"overhead/0\"]').click()").unwrap();
+    tab.wait_until(&looks_through("overhead/0")).unwrap();
+
     // On a phone nothing is cut off at the side.
     let mut phone = browser.open(&play.address, 390, 844).unwrap();
     phone.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
     phone.wait_until(&looks_through("overhead/0")).unwrap();
     assert_eq!(phone.evaluate("document.documentElement.scrollWidth <= 390").unwrap(), json!(true));
-    drop((tab, phone, browser));
+    // What was chosen in another session, as by the participant before, is not chosen in this one.
+    for name in ["cohabit-view", "cohabit-voice"] {
+        let other = format!(
+            "{{ const kept = JSON.parse(localStorage.getItem('{name}')) ?? {{ value: {{ aloud: true }} }}; \
+             localStorage.setItem('{name}', JSON.stringify({{ ...kept, of: 'another' }})); }}"
+        );
+        phone.evaluate(&other).unwrap();
+    }
+    let mut next = browser.open(&play.address, 390, 844).unwrap();
+    next.wait_until("document.querySelector('#chat-input') !== null && window.cohabit?.frames > 0").unwrap();
+    next.wait_until(&looks_through("spectator/0")).unwrap();
+    assert_eq!(next.evaluate("window.cohabit.voice.aloud").unwrap(), json!(false));
+    drop((tab, phone, next, browser));
     play.end().unwrap();
 }
 

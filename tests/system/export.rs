@@ -51,6 +51,25 @@ fn what_cannot_be_exported_is_named() {
 }
 
 #[test]
+fn logs_that_cannot_be_read_are_named_and_the_others_are_exported() {
+    let scratch = Scratch::new("export-unread");
+    let [logs, out] = ["logs", "tables"].map(|name| scratch.path(name));
+    let made = ["eval", "--user", "simulated", "--missions", "1", "--seed=3", "--record", &logs];
+    assert!(run(COHABIT, &made).unwrap().status.success());
+    for name in ["logs/empty.mcap", "logs/other.mcap"] {
+        let _ = scratch.write(name, "");
+    }
+    let output = run(COHABIT, &["export", &logs, "--out", &out]).unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    for part in ["2 of 3 logs cannot be read", "logs/empty.mcap", "logs/other.mcap"] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+    let sessions = fs::read_to_string(scratch.path("tables/sessions.csv")).unwrap();
+    assert_eq!(sessions.lines().count(), 2, "{sessions}");
+}
+
+#[test]
 fn a_summary_for_programs_is_all_that_is_printed_beside_parquet_tables() {
     let scratch = Scratch::new("export-quiet");
     let [logs, out] = ["logs", "tables"].map(|name| scratch.path(name));

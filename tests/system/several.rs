@@ -38,6 +38,8 @@ fn robots_are_called_by_name_and_each_has_a_mind_of_its_own() {
     page.say("Bob, go to the reception").unwrap();
     page.wait("Bob's answer", |_, message| said_by(message, 1, "going to the reception")).unwrap();
     page.wait("Bob's arrival", |_, message| said_by(message, 1, "I am in the reception")).unwrap();
+    let is_told = |body: &u32| of_body(&page.state, *body)["room_name"].is_string();
+    assert!([0, 1].iter().all(is_told), "the page shows where each is: {}", page.state);
     let rosie = of_body(&page.state, 0).clone();
     // Who was spoken to is spoken to still.
     page.say("where are you?").unwrap();
@@ -74,6 +76,20 @@ fn stop_without_a_name_stops_all() {
         stopped == [true, true]
     })
     .unwrap();
+    play.end().unwrap();
+}
+
+#[test]
+fn a_robot_that_acts_on_its_own_says_so_to_who_tells_it_something() {
+    let play = Play::start(COHABIT, &["make_cereal", "--agent", "expert", "--seed", "4"]).unwrap();
+    let mut page = Page::open(play.authority()).unwrap();
+    for told in ["stop!", "go to the reception"] {
+        page.say(told).unwrap();
+        let is_told = |message: &Value| {
+            message["from"] == "robot" && message["text"].as_str().is_some_and(|text| text.contains("I act on my own"))
+        };
+        page.wait("what it is", |_, message| is_told(message)).unwrap();
+    }
     play.end().unwrap();
 }
 

@@ -460,6 +460,26 @@ fn studies_are_checked_with_places_and_the_one_that_ships_can_be_run() {
 }
 
 #[test]
+fn missions_that_the_planner_does_not_solve_are_named() {
+    let scratch = study("study-solve");
+    let (_, soda) = cohabit_cdf::mission::builtin().iter().find(|(file, _)| *file == "cold_soda.json").unwrap();
+    let mut sparks: Value = serde_json::from_str(soda).unwrap();
+    sparks["task_goals"][0]["object_states"] = json!([{ "CanSodaNew_01_1": "isSparking=true" }]);
+    let _ = scratch.write("sparks.json", &sparks.to_string());
+    for (missions, code) in [("[\"cold_soda\", \"make_cereal\"]", 0), ("[\"cold_soda\", \"sparks.json\"]", 2)] {
+        let file = STUDY.replacen("[\"cold_soda\", \"make_cereal\"]", missions, 1);
+        let checked = run(COHABIT, &["study", "check", &scratch.write("solve.toml", &file), "--solve"]).unwrap();
+        let [told, said] = [&checked.stdout, &checked.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
+        assert_eq!(checked.status.code(), Some(code), "{told}{said}");
+        assert!(told.contains("cold_soda: solved by the planner: "), "{told}");
+        if code != 0 {
+            assert!(told.contains("sparks.json: not solved by the planner: ") && told.contains("goal 0"), "{told}");
+            assert!(said.contains("the planner does not solve sparks.json"), "{said}");
+        }
+    }
+}
+
+#[test]
 fn links_let_in_and_nothing_else_does() {
     let scratch = study("study-links");
     let server = Server::start(&scratch, "0");

@@ -32,7 +32,7 @@ const DOZE: Duration = Duration::from_millis(100);
 /// Why nothing can be done for now.
 const NOWHERE: &str = "the body is between two rooms: try again in a moment";
 /// The same, for ever.
-const OVER: &str = "the session has ended: start one of this name again, and then this server of tools";
+const OVER: &str = "the session has ended: ask people to start one of this name again, and then this server of tools";
 
 /// A client, and the body that it plays.
 pub(crate) struct Bridge<'a> {
@@ -171,7 +171,7 @@ impl<'a> Bridge<'a> {
 
     fn call(&mut self, id: Value, name: &str, arguments: &Map<String, Value>) -> Result<(), BridgeError> {
         let next = if self.waiting.len() >= MOST_CALLS {
-            refused(format!("{MOST_CALLS} calls are under way already"))
+            refused(format!("{MOST_CALLS} calls are under way already: wait until one of them is answered"))
         } else {
             self.begin(name, arguments)?
         };
@@ -334,7 +334,7 @@ impl<'a> Bridge<'a> {
             Wait::Claim { command, then } => match self.peer.take_outcome(*command) {
                 Some(outcome) if outcome.status.is_success() => self.do_now(*then).map(Some),
                 Some(outcome) => Ok(Some(Next::Said(Said::of(&outcome)))),
-                None => Ok(is_late.then(|| refused("the simulator does not answer: `cohabit top` shows it"))),
+                None => Ok(is_late.then(|| refused("the simulator does not answer: tell whoever runs the session"))),
             },
             Wait::Action { command, is_look } => match self.ended(*command) {
                 Some(outcome) if *is_look && outcome.status.is_success() => self.look().map(Some),
@@ -349,7 +349,7 @@ impl<'a> Bridge<'a> {
             },
             Wait::Picture { eyes, tick } => match newest(eyes, *tick)? {
                 Some(glance) => Ok(Some(Next::Said(self.seen(&glance)?))),
-                None => Ok(is_late.then(|| refused("the camera delivers no picture: `cohabit top` shows the session"))),
+                None => Ok(is_late.then(|| refused("the camera delivers no picture: tell whoever runs it"))),
             },
             Wait::Answer { from } => {
                 let said = self.peer.take_said_since(*from);

@@ -90,7 +90,8 @@ impl Things {
         };
         let near = catalog.near(text).filter(is_there);
         let meant = near.map_or_else(String::new, |near| format!("{} ", suggestion(&near)));
-        format!("nothing here is `{text}`: {meant}`look` lists what is in sight")
+        let advice = "use a plainer word, or the number of a thing that `look` lists";
+        format!("nothing here is `{text}`, in any room: {meant}{advice}")
     }
 
     fn several(&self, text: &str, objects: &[ObjectId], scene: &Known) -> String {
@@ -166,8 +167,8 @@ mod tests {
         for (text, part) in [
             ("9", "no thing of number 9"),
             ("the green mug", "nothing here is `the green mug`"),
-            ("hammer", "nothing here is `hammer`: `look`"),
-            ("xylophone", "nothing here is `xylophone`: `look`"),
+            ("hammer", "nothing here is `hammer`, in any room: use a plainer word"),
+            ("xylophone", "nothing here is `xylophone`, in any room: use a plainer word"),
         ] {
             let refused = things.object(text, &scene).unwrap_err();
             assert!(refused.contains(part), "{text}: {refused}");

@@ -84,11 +84,11 @@ const PLACE: Argument = Argument {
 const TEXT: Argument = Argument { name: "text", about: "what to say, in plain text", takes: Takes::Text };
 const ANSWER: Argument = Argument {
     name: "seconds",
-    about: "how long to wait for an answer",
+    about: "how many seconds to wait for an answer",
     takes: Takes::Number(1.0, LONGEST_WAIT_S, Some(30.0)),
 };
 const SECONDS: Argument =
-    Argument { name: "seconds", about: "how long", takes: Takes::Number(0.1, LONGEST_WAIT_S, None) };
+    Argument { name: "seconds", about: "how many", takes: Takes::Number(0.1, LONGEST_WAIT_S, None) };
 
 /// The tools that the table of actions does not have: what each does, its name, what it is told to do, and its arguments.
 const OWN: [(Kind, &str, &str, &[Argument]); 8] = [
@@ -109,7 +109,12 @@ const OWN: [(Kind, &str, &str, &[Argument]); 8] = [
     ),
     (Kind::Listen, "listen", "Tell what was said, and what the mission told people, since this was last called.", &[]),
     (Kind::Goals, "goals", "Tell the goals of the mission: which are met, and which are left.", &[]),
-    (Kind::Wait, "wait", "Let time go by; if an action is still under way, until it has ended at most.", &[SECONDS]),
+    (
+        Kind::Wait,
+        "wait",
+        "Let so many seconds go by; fewer, if an action under way ends before: then what came of it is told.",
+        &[SECONDS],
+    ),
     (Kind::Stop, "stop", "Stop whatever the body is doing, now.", &[]),
 ];
 
@@ -153,7 +158,10 @@ fn argument(deed: ToolDeed) -> Option<Argument> {
         ToolArgument::Object if deed == ToolDeed::Handle(ActionKind::GoTo) => Some(PLACE),
         ToolArgument::Object => Some(OBJECT),
         ToolArgument::Number { name, low, high } => {
-            let about = "how far, in the unit that its name ends with";
+            let about = match deed {
+                ToolDeed::Turn => "how far, in radians: degrees divided by 57.3; positive is to the left",
+                _ => "how far, in metres; negative is backwards",
+            };
             Some(Argument { name, about, takes: Takes::Number(low, high, None) })
         }
     }
@@ -222,7 +230,8 @@ impl Argument {
             Takes::Number(low, high, usual) => {
                 let number = if value.is_none() { usual } else { value.and_then(Value::as_f64) };
                 let number = number.filter(|number| (low..=high).contains(number));
-                given.number = number.ok_or_else(|| format!("`{}` is a number from {low} to {high}", self.name))?;
+                let problem = || format!("`{}` is a number from {low} to {high}: {}", self.name, self.about);
+                given.number = number.ok_or_else(problem)?;
             }
         }
         Ok(())
@@ -313,6 +322,7 @@ mod tests {
             ("move", json!({ "distance_m": "far" }), "a number from -10 to 10"),
             ("move", json!({ "distance_m": 11 }), "a number from -10 to 10"),
             ("move", json!({ "distance_m": null }), "a number from -10 to 10"),
+            ("turn", json!({ "yaw_rad": 90 }), "in radians: degrees divided by 57.3"),
             ("say", json!({ "text": 3 }), "`text` is a text"),
             ("ask", json!({ "text": "Which?", "seconds": 3600 }), "a number from 1 to 50"),
             ("wait", json!({}), "`seconds` is a number"),

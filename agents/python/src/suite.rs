@@ -12,8 +12,11 @@ type FacetTuple = (String, String, Vec<String>, Vec<String>);
 /// A tool: its name, what it does, and what it takes, if anything: the argument's name and, of a number, the lowest and the highest.
 type ToolRow = (&'static str, String, Option<(&'static str, Option<(f64, f64)>)>);
 
+/// Types of which missions were given up: how many, and why the last one was.
+type GivenUpRow = (String, usize, String);
+
 /// Lines of a file of missions, made up and solved once each; of these types alone, if any are given; with the packs in these
-/// folders.
+/// folders. Besides, which types missions were given up of.
 ///
 /// # Errors
 /// A `ValueError` if there is no such type, or there are no more missions of one.
@@ -27,7 +30,7 @@ pub fn generate_missions(
     blockers: Option<f64>,
     workers: usize,
     world: Vec<String>,
-) -> PyResult<Vec<String>> {
+) -> PyResult<(Vec<String>, Vec<GivenUpRow>)> {
     py.detach(|| {
         let library = Library::with_packs(&world)?;
         let catalog = library.catalog();
@@ -41,8 +44,8 @@ pub fn generate_missions(
         let mut lines = Vec::new();
         let order = Order { count, seed, workers: workers.max(1) };
         let given_up = generate(&spec, catalog, order, &mut |mission| lines.push(mission.as_line().to_string()));
-        given_up.map_err(bad_argument)?;
-        Ok(lines)
+        let given_up = given_up.map_err(bad_argument)?;
+        Ok((lines, given_up.into_iter().map(|(kind, missed)| (kind, missed.count, missed.reason)).collect()))
     })
 }
 

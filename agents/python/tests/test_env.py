@@ -319,6 +319,17 @@ def test_a_mission_has_robots_of_its_own() -> None:
     assert all(env.observation_space(agent).contains(one) for agent, one in observations.items())
 
 
+def test_agents_are_those_of_missions_with_as_many_robots() -> None:
+    mission = json.loads(builtin("make_cereal"))
+    mission["scene"]["simbot_init"] = [{"name": name, "roomLocation": ["BreakRoom"]} for name in ("TAM_1", "TAM_2")]
+    for planes in ((), ("color",)):
+        env = cohabit.ParallelEnv(mission, bodies=(), planes=planes, size=24)
+        env.reset(seed=0)
+        with pytest.raises(ValueError, match="mission `.*` has 1 bodies, and this environment has 2 agents: play"):
+            env.reset(seed=0, options={"mission": "cold_soda"})
+        assert len(env.reset(seed=0, options={"mission": mission})[0]) == 2
+
+
 def test_a_dictionary_that_was_changed_is_another_mission() -> None:
     mission = json.loads(builtin("make_cereal"))
     env = cohabit.Env(mission, planes=())

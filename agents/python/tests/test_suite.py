@@ -13,12 +13,20 @@ import numpy as np
 import pytest
 
 import cohabit
-from cohabit import CHOICES, GoTo, PickUp
+from cohabit import CHOICES, GoTo, PickUp, _native
 
 
 @pytest.fixture(scope="module")
 def made() -> cohabit.Suite:
     return cohabit.generate(24, seed=3)
+
+
+def test_types_that_were_given_up_are_told(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    line = _native.generate_missions(1, 1, None, None, 1, [])[0][0]
+    given_up = ([line], [("deliver", 3, "there is no room")])
+    monkeypatch.setattr(_native, "generate_missions", lambda *_: given_up)
+    assert len(cohabit.generate(1)) == 1
+    assert "deliver: 3 given up, the last because there is no room" in caplog.text
 
 
 def test_missions_are_made_by_a_seed(made: cohabit.Suite) -> None:
@@ -36,6 +44,11 @@ def test_a_suite_is_written_and_read(made: cohabit.Suite, tmp_path: Path) -> Non
     made.save(tmp_path / "missions.jsonl")
     assert list(cohabit.suite(tmp_path / "missions.jsonl")) == list(made)
     (tmp_path / "one.json").write_text(made[0].text)
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    (folder / "two.json").write_text(made[0].text)
+    (folder / "manifest.json").write_text('{"parts": {}}')
+    assert [one.id for one in cohabit.suite(folder)] == ["two"], "a manifest is no mission"
     assert [one.id for one in cohabit.suite(tmp_path / "one.json")] == ["one"]
     assert [one.id for one in cohabit.suite(tmp_path)] == ["one"]
     session = {"CDF": json.loads(made[0].text), "human_annotations": [{"instructions": [{"instruction": "Go."}]}]}

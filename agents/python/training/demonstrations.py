@@ -3,7 +3,8 @@
     pip install torch numpy pandas pyarrow pillow
     python demonstrations.py FOLDER
 
-Needs neither this package nor lerobot. An item is what the robot sees before a step and what it was told, and the action.
+Needs neither this package nor lerobot. An item is what the robot sees before a step, if the set has pictures in colour, and what it was
+told, and the action.
 """
 
 import io
@@ -55,23 +56,29 @@ class NativeSteps(Dataset[Item]):
             file.seek(at)
             step = json.loads(file.readline())
         action = step["action"] or {"kind": "stop"}
-        return {
-            "color": picture((episode / step["frames"]["color"]).read_bytes()),
+        item: Item = {
             "instruction": step.get("instructions", {}).get("plain", ""),
             "kind": KINDS.index(action["kind"]),
         }
+        if (color := step.get("frames", {}).get("color")) is not None:
+            item["color"] = picture((episode / color).read_bytes())
+        return item
 
 
 class LeRobotSteps(Dataset[Item]):
     """Each frame of the Parquet files, all of them in memory, pictures packed as they are in the files."""
 
-    COLUMNS = ["observation.images.color", "observation.state", "action", "step.instruction"]
+    COLUMNS = ["observation.state", "action", "step.instruction"]
+    COLOR = "observation.images.color"
 
     def __init__(self, folder: Path) -> None:
-        names = json.loads((folder / "meta/info.json").read_text())["features"]["action"]["names"]
+        features = json.loads((folder / "meta/info.json").read_text())["features"]
+        names = features["action"]["names"]
         assert names[: len(KINDS)] == [f"is_{kind}" for kind in KINDS], names
         files = sorted(folder.glob("data/*/*.parquet"))
-        self.frames = pd.concat([pd.read_parquet(file, columns=self.COLUMNS) for file in files], ignore_index=True)
+        self.has_color = self.COLOR in features
+        columns = [*self.COLUMNS, self.COLOR] if self.has_color else self.COLUMNS
+        self.frames = pd.concat([pd.read_parquet(file, columns=columns) for file in files], ignore_index=True)
 
     def __len__(self) -> int:
         return len(self.frames)
@@ -79,12 +86,14 @@ class LeRobotSteps(Dataset[Item]):
     def __getitem__(self, index: int) -> Item:
         frame = self.frames.iloc[index]
         action = np.asarray(frame["action"], dtype=np.float32)
-        return {
-            "color": picture(frame["observation.images.color"]["bytes"]),
+        item: Item = {
             "state": torch.from_numpy(np.array(frame["observation.state"], dtype=np.float32)),
             "instruction": frame["step.instruction"],
             "kind": int(action[: len(KINDS)].argmax()),
         }
+        if self.has_color:
+            item["color"] = picture(frame[self.COLOR]["bytes"])
+        return item
 
 
 def steps(folder: Path) -> NativeSteps | LeRobotSteps:
@@ -98,7 +107,8 @@ def main() -> None:
     kinds = torch.zeros(len(KINDS), dtype=torch.long)
     for batch in DataLoader(data, batch_size=16, shuffle=True, num_workers=2):
         kinds += torch.bincount(batch["kind"], minlength=len(KINDS))
-    print(f"{len(data)} steps, pictures {tuple(batch['color'].shape[1:])}")
+    pictures = f"pictures {tuple(batch['color'].shape[1:])}" if "color" in batch else "no pictures in colour"
+    print(f"{len(data)} steps, {pictures}")
     for kind, count in zip(KINDS, kinds.tolist(), strict=True):
         print(f"{kind:>8} {count}")
 

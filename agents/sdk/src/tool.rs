@@ -3,8 +3,9 @@
 
 use cohabit_cdf::{ActionKind, ActionTable};
 
-/// The most reasons for a refusal that a description has: those that come up first stand first in the table.
-const MOST_REFUSALS: usize = 6;
+/// The most reasons for a refusal that a description has: first those of the action's own, such as the tool that it takes, then those
+/// of getting at a thing, which are alike for all actions. Of either, those that come up first stand first in the table.
+const MOST_REFUSALS: usize = 8;
 
 /// What the names in the table's sentences stand for, and what all others do.
 const NAMES: [(&str, &str); 4] =
@@ -74,12 +75,23 @@ impl ToolDeed {
 
     fn summary(self) -> String {
         let summary = match self {
-            Self::Move => "Move along the heading; a negative distance is backwards.",
-            Self::Turn => "Turn on the spot; a positive angle is to the left.",
+            Self::Move => "Move along the heading, by a distance in metres; a negative one is backwards.",
+            Self::Turn => {
+                "Turn on the spot, by an angle in radians (1.57 is a quarter turn); a positive one is to the left."
+            }
             Self::LookAround => "Turn once around, looking.",
             Self::Handle(ActionKind::GoTo) => "Walk to an object, so that it is within reach, or into a room.",
             Self::Handle(ActionKind::PickUp) => "Take an object into the empty hand.",
             Self::Handle(ActionKind::Place) => "Put what is held onto or into a receptacle.",
+            Self::Handle(ActionKind::Break) => "Break an object with the hammer in the hand, or cut it with the knife.",
+            Self::Handle(ActionKind::Pour) => "Pour what is in the held thing into or onto an object.",
+            Self::Handle(ActionKind::Fill) => {
+                "Fill what is held, at the object that gives water; or an object that is held or stands in the sink."
+            }
+            Self::Handle(ActionKind::Clean) => {
+                "Clean what is held, at the object that gives water; or an object that is held or lies in the sink."
+            }
+            Self::Handle(ActionKind::Throw) => "Throw what is held at an object: the object is the target.",
             Self::Handle(kind) => {
                 return format!("{} an object, with the hand or with what it holds.", capitalized(kind.name()));
             }
@@ -107,7 +119,7 @@ fn description(deed: ToolDeed, table: &ActionTable) -> String {
             }
         }
         for need in &rule.needs {
-            let refusal = (need.status, need.words.as_str());
+            let refusal = (need.is_of_access(), need.status, need.words.as_str());
             if !refusals.contains(&refusal) {
                 refusals.push(refusal);
             }
@@ -117,7 +129,8 @@ fn description(deed: ToolDeed, table: &ActionTable) -> String {
         text += &format!(" People say `{}`.", spoken.join("`, `"));
     }
     if !refusals.is_empty() {
-        let sentences: Vec<String> = refusals.iter().take(MOST_REFUSALS).map(|(_, words)| sentence(words)).collect();
+        refusals.sort_by_key(|(is_of_access, ..)| *is_of_access);
+        let sentences: Vec<String> = refusals.iter().take(MOST_REFUSALS).map(|(.., words)| sentence(words)).collect();
         text += &format!(" It is refused with: {}", sentences.join(" "));
     }
     text
@@ -161,11 +174,23 @@ mod tests {
             let tool = tools.iter().find(|tool| tool.deed.name() == name).unwrap();
             tool.description.as_str()
         };
-        assert_eq!(described("move"), "Move along the heading; a negative distance is backwards.");
+        assert!(described("move").contains("in metres") && described("turn").contains("in radians"));
         assert!(described("pick_up").starts_with("Take an object into the empty hand. People say `"));
         assert!(described("pick_up").contains("`grab`"), "{}", described("pick_up"));
-        let refusal = " It is refused with: The object is no longer there. The object is in a hand.";
+        let refusal = " It is refused with: The object is in a hand. I find no way to the object.";
         assert!(described("go_to").contains(refusal), "{}", described("go_to"));
+        // What an action needs of its own is not crowded out by what all need.
+        for (name, need) in [
+            ("break", "I have to hold the hammer"),
+            ("break", "I have to hold the knife"),
+            ("fill", "it has to be turned on first"),
+            ("clean", "it has to be turned on first"),
+            ("toggle", "The object has no power"),
+            ("pick_up", "The object is too far away"),
+        ] {
+            assert!(described(name).contains(need), "{name}: {}", described(name));
+        }
+        assert!(described("throw").starts_with("Throw what is held at an object"), "{}", described("throw"));
         assert!(described("scan").starts_with("Scan an object, with the hand or with what it holds."));
     }
 

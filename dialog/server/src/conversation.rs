@@ -2,6 +2,7 @@
 //!
 //! Pure: the newest knowledge comes in with every call, and what is to be sent comes out.
 
+mod alone;
 mod face;
 mod hearing;
 mod held;
@@ -36,6 +37,8 @@ pub struct Conversation {
     consulting: Consulting,
     /// What is held back.
     holding: Holding,
+    /// Whether its mind acts on its own, whatever it is told.
+    is_alone: bool,
 }
 
 /// What the robot asks.
@@ -125,7 +128,14 @@ const MOST_PLANS: usize = 16;
 impl Conversation {
     /// A conversation in which nothing was said yet.
     pub fn new(language: Language, body: u32) -> Self {
-        Self { language, body, memory: Memory::default(), consulting: Consulting::Never, holding: Holding::default() }
+        Self {
+            language,
+            body,
+            memory: Memory::default(),
+            consulting: Consulting::Never,
+            holding: Holding::default(),
+            is_alone: false,
+        }
     }
 
     /// The same, with an interpreter that is asked at these times: [`Outgoing::Interpret`] asks it.
@@ -354,7 +364,8 @@ impl Conversation {
     /// Whether something was put off that [`Self::wake`] goes on with.
     #[must_use]
     pub const fn awaits(&self) -> bool {
-        self.memory.context.awaits()
+        // Of what was put off before its mind was another, nothing comes.
+        !self.is_alone && self.memory.context.awaits()
     }
 
     /// Goes on with what was put off, once its time has come, s, or what it waits for is so.
@@ -403,7 +414,9 @@ impl Conversation {
         end: TurnEnd,
         outbox: &mut Vec<Outgoing>,
     ) {
-        let shown = &objects[..objects.len().min(MOST_SHOWN)];
+        // Who acts on its own outlines nothing for people.
+        let most = if self.is_alone { 0 } else { MOST_SHOWN };
+        let shown = &objects[..objects.len().min(most)];
         if shown.is_empty() {
             outbox.push(Outgoing::TurnEnded { turn, end });
             return;

@@ -132,6 +132,8 @@ pub struct DialogConfig {
     pub consulting: Consulting,
     /// The bodies that people speak to.
     pub robots: Vec<u32>,
+    /// Those whose minds act on their own, whatever people tell them.
+    pub on_their_own: Vec<u32>,
     /// What bodies are called, if not by what they are.
     pub names: BTreeMap<u32, String>,
     /// What people are asked about the session.
@@ -239,6 +241,7 @@ pub fn serve(
     let consulting = if config.interpreter.is_some() { config.consulting } else { Consulting::Never };
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, consulting)
         .holding(&config.holding)
+        .on_their_own(&config.on_their_own)
         .with_mission(&mission.goal_text);
     let (puzzles, asked) = config.interpreter.is_some().then(interpreter::puzzles).unzip();
     let survey = Arc::new(Survey::new(&*bus, config.questionnaires)?);

@@ -326,6 +326,7 @@ fn others(state: StateView<'_>, catalog: &Catalog) -> Vec<Value> {
     let place = |body: &BodyRecord| {
         let [x, y, _] = body.position_m;
         json!({ "body": body.body, "kind": body_kind(body), "x": x, "y": y, "yaw": body.yaw_rad,
+                "room_name": catalog.room_at(body.room).map(|room| room.name_in(catalog)),
                 "holding": holding(body, state, catalog) })
     };
     state.bodies.iter().skip(1).map(place).collect()

@@ -14,7 +14,7 @@ use cohabit_bus::{
 };
 use serde::{Deserialize, Serialize, de::IgnoredAny};
 
-use crate::text;
+use crate::{limits::LONGEST_TEXT_CHARS, text};
 
 /// Those that ship, by name.
 const BUILT_IN: [(&str, &str); 8] = [
@@ -266,17 +266,40 @@ pub enum Given {
 
 /// Why answers cannot be taken, for the person who gave them.
 #[derive(Clone, Debug, Eq, PartialEq)]
-pub struct NotAnswered(String);
+pub enum NotAnswered {
+    /// A question has no answer, or one that is none of its own.
+    Missing {
+        /// Its number, from 1.
+        question: u32,
+    },
+    /// The words that answer a question are too many.
+    TooLong {
+        /// Its number, from 1.
+        question: u32,
+        /// How long they are, in characters.
+        characters: usize,
+        /// How long they may be.
+        most: usize,
+    },
+    /// Another reason.
+    Other(String),
+}
 
 impl NotAnswered {
     pub(crate) const fn new(reason: String) -> Self {
-        Self(reason)
+        Self::Other(reason)
     }
 }
 
 impl fmt::Display for NotAnswered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        match self {
+            Self::Missing { question } => write!(f, "Question {question} has no answer yet."),
+            Self::TooLong { question, characters, most } => {
+                write!(f, "Question {question}: It has {characters} characters; {most} at most, please.")
+            }
+            Self::Other(reason) => f.write_str(reason),
+        }
     }
 }
 
@@ -287,20 +310,21 @@ impl Questionnaire {
     /// [`NotAnswered`], when one is missing or is none.
     pub fn answered(&self, person: u32, given: &[Option<Given>]) -> Result<Vec<AnswerMessage>, NotAnswered> {
         if given.len() != self.items.len() {
-            return Err(NotAnswered(format!("{} answers to {} questions.", given.len(), self.items.len())));
+            return Err(NotAnswered::new(format!("{} answers to {} questions.", given.len(), self.items.len())));
         }
         let mut messages = Vec::new();
-        for (number, (item, given)) in (1..).zip(self.items.iter().zip(given)) {
+        for (number, (item, given)) in (1_u32..).zip(self.items.iter().zip(given)) {
             if given.is_none() && item.optional {
                 continue;
             }
             if let Some(Given::Text(text)) = given
                 && !text::is_within_limit(text.trim())
             {
-                return Err(NotAnswered(format!("Question {number}: {}", text::too_long(text.trim()))));
+                let characters = text.trim().chars().count();
+                return Err(NotAnswered::TooLong { question: number, characters, most: LONGEST_TEXT_CHARS });
             }
             let answer = given.as_ref().and_then(|given| item.answered(given));
-            let mut message = answer.ok_or_else(|| NotAnswered(format!("Question {number} has no answer yet.")))?;
+            let mut message = answer.ok_or(NotAnswered::Missing { question: number })?;
             message.person = person;
             message.item = number;
             message.questionnaire = Text::new(&self.name);

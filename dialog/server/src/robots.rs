@@ -117,6 +117,16 @@ impl Robots {
         self
     }
 
+    /// The same; those of these bodies act on their own, whatever they are told.
+    pub fn on_their_own(mut self, bodies: &[u32]) -> Self {
+        let minded = |robot: Robot| {
+            let is_alone = bodies.contains(&robot.body.0);
+            Robot { conversation: robot.conversation.alone(is_alone), ..robot }
+        };
+        self.robots = self.robots.into_iter().map(minded).collect();
+        self
+    }
+
     /// The same, told what people are asked to get done.
     pub fn with_mission(mut self, mission: &str) -> Self {
         for robot in &mut self.robots {

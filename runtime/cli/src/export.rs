@@ -11,7 +11,7 @@ use cohabit_tables::{NOTEBOOK, Played, Summary, codebook, plots, tables, write_c
 
 use crate::{
     failure::bad_input,
-    movement::with_movement,
+    readable_logs::ReadLogs,
     rerun,
     study::{is_left_out, is_of_practice, participants_of},
     terminal::{shown, shown_json, shown_lines},
@@ -68,21 +68,20 @@ impl Export {
             let remedy = "leave `--format` out, and write CSV";
             return Err(bad_input(format!("`--format parquet` writes no sessions of world packs yet: {remedy}")));
         }
-        if let (Some(folder), Format::Parquet) = (&self.out, self.format) {
-            rerun::tables(&logs, folder, self.json)?;
-            if !self.summary {
-                return Ok(());
-            }
+        if let (Some(folder), Format::Parquet, false) = (&self.out, self.format, self.summary) {
+            return rerun::tables(&logs, folder, self.json);
         }
-        let catalog = world.catalog();
-        let played = with_movement(Played::open_all(&logs, catalog).map_err(bad_input)?, catalog);
-        if let (Some(folder), Format::Csv) = (&self.out, self.format) {
-            write(&played, folder, self.json)?;
+        let read = ReadLogs::new(&logs, world.catalog())?;
+        let played = &read.played;
+        match (&self.out, self.format) {
+            (Some(folder), Format::Csv) => write(played, folder, self.json)?,
+            (Some(folder), Format::Parquet) => rerun::tables(&read.readable(&logs), folder, self.json)?,
+            (None, _) => {}
         }
         if self.summary {
-            let summary = Summary::new(&played, &self.by).map_err(bad_input)?;
+            let summary = Summary::new(played, &self.by).map_err(bad_input)?;
             if let Some(folder) = &self.out {
-                write_plots(&played, &self.by, folder, self.json)?;
+                write_plots(played, &self.by, folder, self.json)?;
             }
             if self.json {
                 println!("{}", shown_json(serde_json::to_string_pretty(&summary).context("a summary")?));
@@ -90,7 +89,7 @@ impl Export {
                 print!("{}", shown_lines(summary));
             }
         }
-        Ok(())
+        read.check()
     }
 }
 

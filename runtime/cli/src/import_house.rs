@@ -67,6 +67,7 @@ impl ImportHouse {
         pack_folder::check_is_new(&self.into)?;
         let importer = Importer::default();
         let name = pack_folder::name(&self.into, self.name.as_deref());
+        pack_folder::check_is_own(&self.into, &name)?;
         let mut pack = HousePack::new(&name, importer.world()).map_err(|error| self.refused(&error))?;
         let outcomes = self.import(&importer, &mut pack, count)?;
         if pack.count() == 0 {

@@ -50,6 +50,7 @@ mod pedestrians;
 mod peers;
 mod play;
 mod png_file;
+mod readable_logs;
 mod rendering;
 mod replay;
 mod rerun;

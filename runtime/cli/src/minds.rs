@@ -142,6 +142,12 @@ impl MindRequest {
         arguments.into_iter().map(OsString::from).collect()
     }
 
+    /// The same with its file in that folder.
+    pub fn in_folder(&self, folder: &Path) -> Self {
+        let place = |file: &String| folder.join(file).to_string_lossy().into_owned();
+        Self { script: self.script.as_ref().map(place), ..self.clone() }
+    }
+
     /// Whether it is the expert in this body.
     pub fn is_expert(&self, body: u32) -> bool {
         self.kind == MindKind::Expert && self.body == body
@@ -150,6 +156,11 @@ impl MindRequest {
     /// The body of one that does what people ask of it.
     pub fn spoken_to(&self) -> Option<u32> {
         (self.kind == MindKind::Dialog).then_some(self.body)
+    }
+
+    /// The body of one that does what it does whatever people ask of it. To pedestrians nobody speaks.
+    pub fn on_its_own(&self) -> Option<u32> {
+        (!matches!(self.kind, MindKind::Dialog | MindKind::Pedestrian)).then_some(self.body)
     }
 
     /// Says what is wrong with these minds for a session, before anything of it is started.
@@ -209,6 +220,11 @@ mod tests {
             ("pedestrian=office.toml", "pedestrian=office.toml"),
         ] {
             assert_eq!(text.parse::<MindRequest>().unwrap().to_string(), whole);
+        }
+        for (text, body) in
+            [("dialog", None), ("expert", Some(0)), ("helper@1", Some(1)), ("pedestrian=office.toml", None)]
+        {
+            assert_eq!(text.parse::<MindRequest>().unwrap().on_its_own(), body, "{text}");
         }
         for (text, error) in [
             ("butler", "there is no agent `butler`: dialog, random, scripted, helper, expert, pedestrian"),

@@ -6,12 +6,27 @@ use std::{
     path::Path,
 };
 
+use cohabit_cdf::world_pack;
+
 use crate::failure::{bad_input, environment};
 
 /// The name of a pack: that which is given, or that of its folder.
 pub fn name(folder: &Path, given: Option<&str>) -> String {
     let of_folder = || folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     given.map_or_else(of_folder, str::to_owned)
+}
+
+/// Neither the pack nor its folder is called as a pack that is built in: `--world` would take the one for the other, and both could not be
+/// in one world.
+pub fn check_is_own(folder: &Path, name: &str) -> anyhow::Result<()> {
+    let called = folder.file_name().unwrap_or_default().to_string_lossy();
+    match [name, &*called].into_iter().find(|one| world_pack::builtin_files(one).is_some()) {
+        Some(taken) => Err(bad_input(format!(
+            "{}: `{taken}` is the name of a world pack that comes with the program: take another one",
+            folder.display()
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Nothing is there yet.
@@ -44,4 +59,23 @@ pub fn write(folder: &Path, files: &[(String, String)]) -> anyhow::Result<()> {
 /// A file or folder that could not be made.
 pub fn failed(path: &Path, error: &Error) -> anyhow::Error {
     environment(format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_pack_is_called_as_one_that_is_built_in() {
+        let check = |folder: &str, given: Option<&str>| {
+            let folder = Path::new(folder);
+            check_is_own(folder, &name(folder, given)).map_err(|error| error.to_string())
+        };
+        let taken = [("homes", None), ("packs/homes/", None), ("homes", Some("mine")), ("mine", Some("homes"))];
+        for (folder, given) in taken {
+            let told = check(folder, given).expect_err(folder);
+            assert!(told.contains("`homes` is the name of a world pack that comes with the program"), "{told}");
+        }
+        assert_eq!(check("mine", None), Ok(()));
+    }
 }

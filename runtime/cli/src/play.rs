@@ -1,6 +1,11 @@
 //! `cohabit play`: one session from start to end.
 
-use std::{ffi::OsString, net::SocketAddr, path::PathBuf, time::Instant};
+use std::{
+    ffi::OsString,
+    net::SocketAddr,
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
 use anyhow::Context as _;
 use cohabit_bus::{CameraId, Session, SessionError, Shm, Topic, message::Plane};
@@ -45,7 +50,7 @@ pub struct Play {
     /// A mind for a body: `dialog`, `random`, `scripted`, `helper`, `expert` (which plays the mission to its goals and knows
     /// what the simulator knows) or `pedestrian` (people who walk about by a schedule), with the number of its body if it is not
     /// 0, and a script if it is scripted; as often as there are bodies. Beside others `dialog` has to be named, too: without it
-    /// nobody does what people ask for
+    /// nobody does what people ask for, and the robot tells them so
     #[arg(long = "agent", value_name = "KIND[@BODY][=FILE]", default_value = "dialog")]
     minds: Vec<MindRequest>,
     /// A camera beside those of the bodies, on the topic `frames/NAME`: KIND is `egocentric`, `panorama`,
@@ -98,6 +103,7 @@ impl Play {
         MindRequest::check(&self.minds, &plan)?;
         self.check_names(&plan)?;
         let robots: Vec<u32> = self.minds.iter().filter_map(MindRequest::spoken_to).collect();
+        let on_their_own: Vec<u32> = self.minds.iter().filter_map(MindRequest::on_its_own).collect();
         self.check_frames(&plan)?;
         self.rendering.check()?;
         self.watching.check(&self.packs)?;
@@ -134,7 +140,7 @@ impl Play {
         let minds = self.minds.iter().map(|agent| Role::agent(agent, seed));
         let mut noted = self.noted(&plan, &robots, &questionnaires, before.map(|before| before.from));
         noted.settings.push(("page_language".to_owned(), page_texts.language().to_owned()));
-        let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots)];
+        let peers = [Role::record(&log, &noted, self.watching), Role::dialog(&self.listening, &robots, &on_their_own)];
         let packs = self.packs.arguments(&world);
         let roles = std::iter::once(sim).chain(peers).chain(minds).map(|role| role.with(&packs));
         let played = Supervisor::start(&name, roles, began).and_then(|supervisor| supervisor.run(&stop));
@@ -155,6 +161,20 @@ impl Play {
             }
             played => played.map(drop),
         }
+    }
+
+    /// Says what is wrong with these settings for a mission, before anything is started; files of agents lie in `folder`.
+    pub fn check_for(&self, plan: SessionPlan, folder: &Path) -> anyhow::Result<()> {
+        let plan = plan.with_bodies(self.bodies.clone());
+        let cameras = [plan.cameras.as_slice(), &self.cameras].concat();
+        let plan = plan.with_cameras(cameras).map_err(bad_input)?;
+        if !plan.bodies.is_empty() {
+            plan.build().map_err(bad_input)?;
+        }
+        let minds: Vec<MindRequest> = self.minds.iter().map(|mind| mind.in_folder(folder)).collect();
+        MindRequest::check(&minds, &plan)?;
+        self.check_names(&plan)?;
+        self.check_frames(&plan)
     }
 
     /// What is played, and the session that it goes on from.

@@ -8,6 +8,7 @@ mod program;
 mod report;
 mod sessions;
 mod simulate;
+mod solving;
 mod speakers;
 mod synthetic_log;
 mod wishes;
@@ -24,13 +25,17 @@ use std::{
 
 use anyhow::Context as _;
 use cohabit_cdf::WorldData;
-use cohabit_study::{Cycle, Folder, FolderError, Records, Registry, StudyFile, StudyService, export, keep};
-use cohabit_tables::{Played, tables};
+use cohabit_dialog::{Consulting, Endpoint};
+use cohabit_study::{
+    Cycle, Folder, FolderError, Records, Registry, StudyFile, StudyService, export, keep,
+    settings::{Setting, Settings},
+};
+use cohabit_tables::tables;
 
 use crate::{
     doctor::ensure_room,
     failure::{bad_input, environment},
-    movement::with_movement,
+    readable_logs::ReadLogs,
     site::SiteOptions,
     stop,
     terminal::{print, shown},
@@ -43,6 +48,10 @@ use program::ThisProgram;
 use report::Report;
 use sessions::{Served, Sessions};
 use simulate::Simulate;
+use solving::solve_all;
+
+/// The setting that says when a language model is asked.
+const MODEL: &str = "model";
 
 /// Runs a study: participants, their conditions, their consent, their sessions, and their data
 #[derive(clap::Args)]
@@ -77,6 +86,9 @@ struct Check {
     /// Print the JSON Schema of studies' files, and nothing else
     #[arg(long, exclusive = true)]
     schema: bool,
+    /// Have the planner play each mission to its goals, too, and name those that it does not solve: some seconds for each
+    #[arg(long)]
+    solve: bool,
 }
 
 #[derive(clap::Args)]
@@ -156,12 +168,26 @@ fn world_of(study: &cohabit_study::Study, folder: &Path) -> anyhow::Result<World
     WorldPacks::beside(folder, packs).read()
 }
 
+/// What is to be said of a study some of whose settings have a language model asked, where there is none.
+fn no_model(study: &cohabit_study::Study, has_model: bool) -> Option<&'static str> {
+    let is_never = |setting: &Setting| *setting == Setting::Value(Consulting::Never.name().to_owned());
+    let asks = |settings: &Settings| settings.get(MODEL).is_some_and(|setting| !is_never(setting));
+    let asked = !has_model && study.all_settings().iter().any(asks);
+    asked.then_some("`model` is set, and no language model is: name one by COHABIT_MODEL_URL and COHABIT_MODEL")
+}
+
 impl Check {
     fn run(&self) -> anyhow::Result<()> {
         let Some(file) = self.file.as_ref().filter(|_| !self.schema) else {
             return print(&format!("{:#}\n", cohabit_study::schema()));
         };
-        let (_, study) = read(file)?;
+        let (read, study) = read(file)?;
+        Self::tell(file, &study);
+        if self.solve { solve_all(&study, read.folder(), &world_of(&study, read.folder())?) } else { Ok(()) }
+    }
+
+    /// Says what is to be known of a study that can be run.
+    fn tell(file: &Path, study: &cohabit_study::Study) {
         let count = |kind| study.conditions(kind).len();
         let (between, within) =
             (count(cohabit_study::design::FactorKind::Between), count(cohabit_study::design::FactorKind::Within));
@@ -179,17 +205,19 @@ impl Check {
         if let Some(note) = study.wizard_note() {
             println!("note: {note}");
         }
+        if let Some(note) = no_model(study, Endpoint::from_environment().is_ok_and(|model| model.is_some())) {
+            println!("note: {note}");
+        }
         if let Some(minimisation) = &study.minimisation {
             let names: Vec<&str> = minimisation.covariates.iter().map(|covariate| covariate.name.as_str()).collect();
             println!("Between-participants conditions are assigned by minimisation over {}", shown(names.join(", ")));
-            return Ok(());
+            return;
         }
-        let cycle = Cycle::of(&study);
+        let cycle = Cycle::of(study);
         println!("One full cycle of the assignment takes {cycle}");
         if let Some(note) = cycle.note(study.participants) {
             println!("note: {note}");
         }
-        Ok(())
     }
 }
 
@@ -197,6 +225,9 @@ impl Run {
     fn run(&self) -> anyhow::Result<()> {
         let stop = stop::on_request()?;
         let (file, study) = read(&self.file)?;
+        if let Some(problem) = no_model(&study, Endpoint::from_environment().map_err(bad_input)?.is_some()) {
+            return Err(environment(problem));
+        }
         let (most_sessions, identity) = (self.most_sessions()?, self.site.identity()?);
         ensure_room()?;
         let mut files = study.files.clone();
@@ -304,13 +335,12 @@ impl Export {
         let world = world_of(&study, file.folder())?;
         let records = Records::read(study, &self.folder).map_err(refused)?;
         let logs = data::logs(&self.folder, &records.progress, self.practice)?;
-        let catalog = world.catalog();
-        let played = with_movement(Played::open_all(&logs, catalog).map_err(bad_input)?, catalog);
+        let read = ReadLogs::new(&logs, world.catalog())?;
         std::fs::create_dir_all(&self.out).map_err(|error| bad_input(format!("{}: {error}", self.out.display())))?;
-        for path in export(&records, tables(&played), self.practice, &self.out)? {
+        for path in export(&records, tables(&read.played), self.practice, &self.out)? {
             println!("{}", shown(path.display()));
         }
-        Ok(())
+        read.check()
     }
 }
 
@@ -329,6 +359,17 @@ mod tests {
             if let Err(error) = checked {
                 panic!("{}: {error:#}", path.display());
             }
+        }
+    }
+
+    #[test]
+    fn a_language_model_that_is_not_there_is_missed() {
+        let ships = concat!(env!("CARGO_MANIFEST_DIR"), "/../study/studies/search.toml");
+        let (_, mut study) = read(Path::new(ships)).expect("a study that ships");
+        assert_eq!(no_model(&study, false), None);
+        for (value, is_missed) in [("never", false), ("unsure", true), ("always", true)] {
+            study.settings.insert(MODEL.to_owned(), Setting::Value(value.to_owned()));
+            assert_eq!((no_model(&study, false).is_some(), no_model(&study, true)), (is_missed, None), "{value}");
         }
     }
 

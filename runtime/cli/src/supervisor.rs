@@ -76,8 +76,8 @@ impl Role {
         Self { name: "agent", arguments: request.arguments(seed) }
     }
 
-    /// The dialog service.
-    pub fn dialog(listening: &Listening, robots: &[u32]) -> Self {
+    /// The dialog service: of the bodies of these robots that people speak to, and of those that act on their own.
+    pub fn dialog(listening: &Listening, robots: &[u32], on_their_own: &[u32]) -> Self {
         let (listen, port) = (listening.listen.to_string(), listening.port.to_string());
         let (drive, knows) = (listening.drive.to_string(), listening.knows.to_string());
         let (ask, model, effort) = (listening.ask.name(), listening.model.name(), listening.understanding.name());
@@ -85,6 +85,7 @@ impl Role {
         let arguments = ["--listen", &listen, "--port", &port].into_iter().chain(played);
         let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
+        let robots = robots.chain(on_their_own.iter().map(|body| format!("--on-its-own={body}")));
         let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
         let hosts = listening.hosts.iter().map(|host| format!("--host={host}"));
         let arguments = arguments.map(str::to_owned).chain(names).chain(robots).chain(questionnaires);

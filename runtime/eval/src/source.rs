@@ -180,7 +180,9 @@ fn missions_in(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
     let failed = |source| SourceError::File { path: folder.to_owned(), source };
     let entries = std::fs::read_dir(folder).map_err(failed)?;
     let mut paths = entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect::<Result<Vec<_>, _>>()?;
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
+    // What commands write beside the missions that they make is no mission itself.
+    let is_manifest = |path: &PathBuf| path.file_name().is_some_and(|name| name == "manifest.json");
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "json") && !is_manifest(path));
     paths.sort();
     Ok(paths)
 }

@@ -31,6 +31,12 @@ pub fn assign(study: &Study, place: u32) -> Plan {
     plan(study, &between, place, &Position::new(study, unit, between.len()))
 }
 
+/// The same of one who comes instead of somebody who has left, with that one's place in the order of all.
+#[must_use]
+pub fn assign_instead(study: &Study, place: u32, order: u32) -> Plan {
+    Plan { place, stands_for: (order != place).then_some(order), ..assign(study, order) }
+}
+
 /// What a participant does before a condition is assigned that depends on what they answer.
 #[must_use]
 pub fn begin(study: &Study, place: u32) -> Plan {

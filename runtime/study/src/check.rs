@@ -51,6 +51,19 @@ pub trait Program {
     /// What is wrong with it.
     fn check_mission(&self, name: &str, world: Option<&WorldData>) -> Result<(), String>;
 
+    /// Finds out whether a mission can be played with these arguments of `cohabit play`: its bodies, cameras and agents, with the files
+    /// in `folder` that they name. Of a mission that cannot be played at all it says nothing.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    fn check_session(
+        &self,
+        arguments: &[String],
+        mission: &str,
+        folder: &Path,
+        world: Option<&WorldData>,
+    ) -> Result<(), String>;
+
     /// The files of the world pack in a folder.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::{
     pair::{PartnerAbsent, SkippedBy, partner_of},
     plan::pseudonym,
-    progress::{Doing, Ending, Event, Phase},
+    progress::{Doing, Ending, Event, Phase, Refused},
     registry::{Registry, StudyFault},
 };
 
@@ -132,7 +132,7 @@ impl Registry {
         if self.may_instead(place) == Some(wanted) {
             return Ok(());
         }
-        Err(StudyFault::NotNow("Please wait for your partner.".to_owned()))
+        Err(Refused::PartnerAwaited.into())
     }
 
     /// Somebody wants to skip their mission: it is over for both of a pair, at once, or when both want to.
@@ -143,7 +143,7 @@ impl Registry {
         {
             let Some(participant) = self.participants.get_mut(&place) else { return Ok(()) };
             if participant.progress.skip_in_s() != Some(0.0) {
-                return Err(StudyFault::NotNow("This mission cannot be skipped yet.".to_owned()));
+                return Err(Refused::NotSkippable.into());
             }
             participant.skip_wanted = participant.progress.plays_together();
             return Ok(());

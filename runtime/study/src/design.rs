@@ -337,6 +337,16 @@ impl Study {
         }
     }
 
+    /// The missions that a block plays.
+    #[must_use]
+    pub fn missions_of<'a>(&'a self, block: &'a Block) -> &'a [String] {
+        match block {
+            Block::Mission { mission, .. } => std::slice::from_ref(mission),
+            Block::Missions(_) => &self.missions,
+            Block::Questionnaires(_) | Block::Break { .. } => &[],
+        }
+    }
+
     /// The settings of all sessions of participants: those of each block under each of its conditions.
     #[must_use]
     pub fn all_settings(&self) -> Vec<Settings> {

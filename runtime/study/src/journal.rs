@@ -242,7 +242,7 @@ mod tests {
         Journal::begin(&path, &plan(), &consented(), 1).unwrap();
         let whole = fs::read_to_string(&path).unwrap();
         for (line, part) in
-            [("nonsense\n", ":3: expected"), ("{\"at_ms\":5,\"event\":\"started\"}\n", ":3: The study is at")]
+            [("nonsense\n", ":3: expected"), ("{\"at_ms\":5,\"event\":\"started\"}\n", ":3: the study is at")]
         {
             fs::write(&path, format!("{whole}{line}")).unwrap();
             let error = Journal::open(&path).map(drop).unwrap_err().to_string();

@@ -31,6 +31,8 @@ const SAVE_EVERY_S: f64 = 5.0;
 const LEFT_AFTER: Duration = Duration::from_secs(600);
 /// So long the end of a mission is seen before the participant goes on.
 const ENDING_SEEN: Duration = Duration::from_secs(4);
+/// So long the end of a mission waits at most for the answer to what was asked about the goal that completed it.
+const LAST_ANSWER: Duration = Duration::from_secs(60);
 /// How often tables are written anew.
 const TABLES_EVERY: Duration = Duration::from_secs(1);
 /// After this a session that could not be started, or died, is started again; after twice as long each time in a row that it came to
@@ -175,7 +177,10 @@ impl Registry {
         }
         live.looked = now;
         if let Some((ending, at)) = live.over {
-            return (at.elapsed() >= ENDING_SEEN).then_some(News::Over(ending));
+            // The goal that completes a mission is met in it, too; nothing else that happens then is asked about.
+            let mut met = live.playing.happened();
+            met.retain(|what| *what == Happening::GoalMet);
+            return self.has_seen_ending(place, &met, at).then_some(News::Over(ending));
         }
         if left_s.is_some_and(|left| left <= live.unsaved_s) {
             return Some(News::Over(Ending::TimeUp));
@@ -209,9 +214,20 @@ impl Registry {
         }
     }
 
-    /// Asks a participant what is due now, if something is. Nothing is asked during practice.
-    fn ask_probe(&mut self, place: u32, happened: &[Happening]) {
-        let Some(participant) = self.participants.get(&place).filter(|one| one.is_here()) else { return };
+    /// Whether a participant has seen long enough that their mission is over since `over_at`, and has answered what they were asked about the
+    /// goal that was just met in it, if there is one.
+    fn has_seen_ending(&mut self, place: u32, met: &[Happening], over_at: Instant) -> bool {
+        let is_asked = !met.is_empty() && self.ask_probe(place, met);
+        let Some(participant) = self.participants.get_mut(&place) else { return true };
+        let is_open = participant.progress.probed().iter().any(|one| one.answer.is_none());
+        let Some(live) = participant.live.as_mut() else { return true };
+        live.is_asked_last |= is_asked;
+        over_at.elapsed() >= if live.is_asked_last && is_open { LAST_ANSWER } else { ENDING_SEEN }
+    }
+
+    /// Asks a participant what is due now, if something is; whether it is. Nothing is asked during practice.
+    fn ask_probe(&mut self, place: u32, happened: &[Happening]) -> bool {
+        let Some(participant) = self.participants.get(&place).filter(|one| one.is_here()) else { return false };
         let progress = &participant.progress;
         let played_s = progress.played_s() + participant.live.as_ref().map_or(0.0, |live| live.unsaved_s);
         let is_practice = progress.mission().is_none_or(|(_, mission, _)| mission.is_practice);
@@ -219,6 +235,7 @@ impl Registry {
         if let Some(probe) = due {
             self.note(place, &Event::Probed { probe });
         }
+        due.is_some()
     }
 
     /// Writes down how long a participant has played.
@@ -300,7 +317,8 @@ impl Registry {
                 let parts = if is_shared { shared::parts(playing, party.len()) } else { vec![playing] };
                 for (seat, (place, playing)) in party.iter().zip(parts).enumerate() {
                     let looked = Instant::now();
-                    let live = Live { playing, seat, page: None, is_heard, looked, unsaved_s: 0.0, over: None };
+                    let (page, over, is_asked_last) = (None, None, false);
+                    let live = Live { playing, seat, page, is_heard, looked, unsaved_s: 0.0, over, is_asked_last };
                     if let Some(participant) = self.participants.get_mut(place) {
                         participant.live = Some(live);
                     }

@@ -76,7 +76,10 @@ impl Registry {
             (Step::Mission(_), Doing::Queued { .. }) => self.waiting(progress.plan().place),
             (Step::Mission(mission), Doing::Playing) => {
                 let mut page = played(participant, mission);
-                page["probe"] = self.open_probe(progress);
+                let is_asked = |live: &Live| live.over.is_none() || live.is_asked_last;
+                if participant.live.as_ref().is_some_and(is_asked) {
+                    page["probe"] = self.open_probe(progress);
+                }
                 page["skip"] = self.skipped_by(progress.plan().place);
                 page
             }

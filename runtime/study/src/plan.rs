@@ -15,8 +15,11 @@ use crate::{
 /// they answer first, it is so once they have.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Plan {
-    /// The participant's place in the order of all, from 1.
+    /// The participant's place, from 1: by it they are called.
     pub place: u32,
+    /// Whose place in the order of all they have, if it is not their own: that of somebody who has left.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stands_for: Option<u32>,
     /// Whether nobody takes part: a program plays them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_synthetic: bool,
@@ -100,6 +103,15 @@ impl PlannedMission {
 }
 
 impl Plan {
+    /// The place in the order of all by which conditions and missions were assigned.
+    #[must_use]
+    pub const fn order(&self) -> u32 {
+        match self.stands_for {
+            Some(order) => order,
+            None => self.place,
+        }
+    }
+
     /// Whether a step is a mission for practice.
     #[must_use]
     pub fn is_practice(&self, step: usize) -> bool {

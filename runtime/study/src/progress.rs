@@ -136,12 +136,31 @@ pub struct Done {
     pub tried: Vec<Tried>,
 }
 
-/// Why an event cannot happen now, for the person who caused it.
-#[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct Refused(&'static str);
-
-const OUT_OF_TURN: Refused = Refused("The study is at another place by now; please reload the page.");
+/// Why something cannot happen now. Pages tell it in the language of the study; this is how the terminal does.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, thiserror::Error)]
+pub enum Refused {
+    /// It belongs to another place of the study.
+    #[error("the study is at another place by now")]
+    OutOfTurn,
+    /// Who has left the study does nothing in it.
+    #[error("who has withdrawn takes no part any more")]
+    Withdrawn,
+    /// What is filled in was changed too often to be kept.
+    #[error("what is filled in is no longer kept before it is sent")]
+    TooManyDrafts,
+    /// A text is too long to be kept.
+    #[error("the text is too long")]
+    TooLong,
+    /// Not all of a tutorial was tried, and it may not be left yet.
+    #[error("there is something left to try")]
+    LeftToTry,
+    /// A mission was not played for so long that it may be skipped.
+    #[error("the mission cannot be skipped yet")]
+    NotSkippable,
+    /// The partner is waited for, and nothing else may be done instead.
+    #[error("the partner is waited for")]
+    PartnerAwaited,
+}
 
 impl Progress {
     /// Somebody who has just come.
@@ -315,7 +334,7 @@ impl Progress {
                 self.agrees_to_audio = *audio;
                 self.begin(0, at_ms);
             }
-            (Phase::Withdrawn, _) => return Err(Refused("You have withdrawn from this study.")),
+            (Phase::Withdrawn, _) => return Err(Refused::Withdrawn),
             (_, Event::Withdrew) => {
                 let effects = self.end_session();
                 self.phase = Phase::Withdrawn;
@@ -341,7 +360,7 @@ impl Progress {
             }
             (Phase::At(..) | Phase::Assigning, Event::PartnerGoesAlone) if !self.is_alone => self.is_alone = true,
             (Phase::At(index, doing), event) => return self.step_at(*index, *doing, event, at_ms),
-            _ => return Err(OUT_OF_TURN),
+            _ => return Err(Refused::OutOfTurn),
         }
         Ok(Vec::new())
     }
@@ -352,7 +371,7 @@ impl Progress {
                 if name == questionnaire =>
             {
                 if self.drafts >= MOST_DRAFTS {
-                    return Err(Refused("What you fill in is no longer kept before you send it."));
+                    return Err(Refused::TooManyDrafts);
                 }
                 self.drafts += 1;
                 self.draft.clone_from(answers);
@@ -385,19 +404,19 @@ impl Progress {
             (Some(Step::Mission(_)), Doing::Playing, Event::Played { seconds }) => self.played_s += seconds,
             (Some(Step::Mission(_)), Doing::Playing, Event::Probed { probe }) => {
                 if self.probed.iter().any(|one| one.probe == *probe || one.answer.is_none()) {
-                    return Err(OUT_OF_TURN);
+                    return Err(Refused::OutOfTurn);
                 }
                 self.probed.push(Probed { probe: *probe, asked_ms: at_ms, answer: None });
             }
             (Some(Step::Mission(_)), Doing::Playing, Event::ProbeAnswered { probe, answer }) => {
                 let is_open = |one: &&mut Probed| one.probe == *probe && one.answer.is_none();
-                let open = self.probed.iter_mut().find(is_open).ok_or(OUT_OF_TURN)?;
+                let open = self.probed.iter_mut().find(is_open).ok_or(Refused::OutOfTurn)?;
                 open.answer = Some((at_ms, answer.clone()));
             }
             (Some(Step::Mission(mission)), Doing::Playing, Event::Tried { exercise }) => {
                 let is_new = !self.tried.iter().any(|one| one.exercise == *exercise);
                 if *exercise >= mission.exercises.len() || !is_new {
-                    return Err(OUT_OF_TURN);
+                    return Err(Refused::OutOfTurn);
                 }
                 self.tried.push(Tried { exercise: *exercise, at_ms });
             }
@@ -419,7 +438,7 @@ impl Progress {
             (Some(Step::Mission(_)), _, Event::Over { ending: Ending::Stopped }) => {
                 self.complete(index, Some(Ending::Stopped), Vec::new(), at_ms);
             }
-            _ => return Err(OUT_OF_TURN),
+            _ => return Err(Refused::OutOfTurn),
         }
         Ok(if self.phase == Phase::Assigning { vec![Effect::Assign] } else { Vec::new() })
     }
@@ -427,7 +446,7 @@ impl Progress {
     fn leave_tutorial(&mut self, index: usize, at_ms: u64) -> Result<Vec<Effect>, Refused> {
         let ending = if self.has_tried_all() { Ending::Complete } else { Ending::Skipped };
         if ending == Ending::Skipped && self.skip_in_s() != Some(0.0) {
-            return Err(Refused("There is something left to try."));
+            return Err(Refused::LeftToTry);
         }
         self.complete(index, Some(ending), Vec::new(), at_ms);
         Ok(vec![Effect::EndSession])
@@ -435,7 +454,7 @@ impl Progress {
 
     fn over(&mut self, index: usize, ending: Ending, at_ms: u64) -> Result<Vec<Effect>, Refused> {
         if ending == Ending::Skipped && self.skip_in_s() != Some(0.0) {
-            return Err(Refused("This mission cannot be skipped yet."));
+            return Err(Refused::NotSkippable);
         }
         self.complete(index, Some(ending), Vec::new(), at_ms);
         Ok(vec![Effect::EndSession])

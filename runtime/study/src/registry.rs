@@ -8,7 +8,7 @@ use std::{
 use cohabit_dialog::token;
 
 use crate::{
-    assign::{assign, assign_among, begin},
+    assign::{assign_among, assign_instead, begin},
     design::{ConsentBox, CovariateSource, Minimisation, Study},
     folder::{Consent, Folder, FolderError, Note},
     journal::{Journal, JournalError},
@@ -77,6 +77,8 @@ pub(crate) struct Live {
     pub unsaved_s: f64,
     /// How its mission ended, and when.
     pub over: Option<(Ending, Instant)>,
+    /// Whether something was asked about the goal that ended it.
+    pub is_asked_last: bool,
 }
 
 /// Somebody who has not agreed yet: nothing of theirs is written down.
@@ -251,7 +253,7 @@ impl Registry {
     /// What somebody does who agrees, as far as it can be known.
     fn plan(&self, place: u32, parameters: &BTreeMap<String, String>) -> Plan {
         let plan = match &self.study.minimisation {
-            None => assign(&self.study, place),
+            None => assign_instead(&self.study, place, self.order(place)),
             Some(minimisation) => {
                 let covariates = minimisation.told_by_link(parameters);
                 if minimisation.questionnaires().next().is_some() {
@@ -262,6 +264,29 @@ impl Registry {
             }
         };
         Plan { is_synthetic: self.folder.is_synthetic(), ..plan }
+    }
+
+    /// The place in the order of all of who agrees at a place: their own, as long as it is planned. Who comes beyond the plan takes that of
+    /// the first who has left and whom nobody stands for yet, so that squares and blocks are whole once all planned have taken part. Both of
+    /// a pair stand for one pair.
+    pub(crate) fn order(&self, place: u32) -> u32 {
+        let (size, planned) = (self.study.session_size(), self.study.participants);
+        if place <= planned {
+            return place;
+        }
+        let unit_of = |place: u32| place.saturating_sub(1) / size;
+        let in_unit = |unit: u32| unit * size + place.saturating_sub(1) % size + 1;
+        let partner = self.participants.get(&partner_of(place)).filter(|_| self.study.pairing.is_some());
+        if let Some(partner) = partner {
+            return in_unit(unit_of(partner.progress.plan().order()));
+        }
+        let is_free = |unit: &u32| {
+            let is_of_it = |progress: &Progress| unit_of(progress.plan().order()) == *unit;
+            let has_it = |one: &Participant| !one.progress.phase().is_out() && is_of_it(&one.progress);
+            let mut own = unit * size + 1..=(unit + 1) * size;
+            own.any(|place| self.has_left(place)) && !self.participants.values().any(has_it)
+        };
+        (0..planned / size).find(is_free).map_or(place, in_unit)
     }
 
     /// The plans of all who have a condition.

@@ -49,6 +49,10 @@ impl Program for Anything {
         Ok(())
     }
 
+    fn check_session(&self, _: &[String], _: &str, _: &Path, _: Option<&WorldData>) -> Result<(), String> {
+        Ok(())
+    }
+
     fn pack_files(&self, _: &Path) -> Result<Vec<PackFile>, String> {
         Ok(Vec::new())
     }

@@ -1,5 +1,7 @@
 //! The study's server: a page for participants, a page for the experimenter, and what they ask for, by plain HTTP.
 
+mod refusals;
+
 use std::{
     collections::BTreeMap,
     io,
@@ -19,7 +21,7 @@ use cohabit_dialog::{
     Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file_routes, media, token,
 };
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::{
     design::Study,
@@ -28,8 +30,9 @@ use crate::{
     markdown::escaped,
     pair::PartnerAbsent,
     plan::place_of,
-    progress::{Ending, Event},
+    progress::{Ending, Event, Refused},
     registry::{Reading, Registry, StudyFault, Who},
+    web::refusals::{not_answered, told},
 };
 
 /// The pages' files: path, media type, text.
@@ -157,16 +160,6 @@ async fn with_study(
     done.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
 }
 
-/// What did not happen, for the page; what the experimenter must know of it goes to the terminal.
-fn told(fault: &StudyFault, texts: &PageTexts) -> Value {
-    match fault {
-        StudyFault::Journal(error) => tracing::error!("{error}"),
-        StudyFault::Folder(error) => tracing::error!("{error}"),
-        StudyFault::Refused(_) | StudyFault::NotNow(_) => return json!(fault.to_string()),
-    }
-    json!(texts.study_text("not_saved"))
-}
-
 /// The parameters of a link, such as a site that recruits people passes them.
 type Parameters = Query<BTreeMap<String, String>>;
 
@@ -277,7 +270,7 @@ pub(crate) fn participants_event(registry: &mut Registry, place: u32, sent: &Sen
             let asked = registry.study.questionnaire(questionnaire);
             let checked = asked.map(|asked| asked.answered(place, answers));
             if let Some(Err(problem)) = checked {
-                return Err(StudyFault::NotNow(problem.to_string()));
+                return Err(not_answered(&problem, &registry.study.page_texts));
             }
         }
         Event::Drafted { questionnaire, answers } => {
@@ -293,7 +286,7 @@ pub(crate) fn participants_event(registry: &mut Registry, place: u32, sent: &Sen
             let Some(asked) = asked else { return Ok(()) };
             asked
                 .answered(place, std::slice::from_ref(answer))
-                .map_err(|problem| StudyFault::NotNow(problem.to_string()))?;
+                .map_err(|problem| not_answered(&problem, &registry.study.page_texts))?;
         }
         Event::Withdrew => {}
         Event::GoesAlone => registry.check_may(place, PartnerAbsent::Alone)?,
@@ -319,7 +312,7 @@ fn check_draft(answers: &[Option<Given>]) -> Result<(), StudyFault> {
     if answers.iter().flatten().all(|given| bytes(given) <= LONGEST_DRAFT_BYTES) {
         return Ok(());
     }
-    Err(StudyFault::NotNow("This text is too long.".to_owned()))
+    Err(Refused::TooLong.into())
 }
 
 async fn experimenter(State(service): State<StudyService>, Path(given): Path<String>) -> Response {

@@ -49,8 +49,8 @@ export function questionnaireForm({ items }, draft, send, keep) {
   return form;
 }
 
-/** One question, which is asked while something else goes on. `send` is given the answer, and gives what is wrong with it. */
-export function probeForm(item, send) {
+/** One question below what it is `about`, asked while something else goes on. `send` is given the answer, and gives what is wrong with it. */
+export function probeForm(item, about, send) {
   const form = element("form", "probe");
   form.noValidate = true;
   form.autocomplete = "off";
@@ -59,7 +59,7 @@ export function probeForm(item, send) {
   problem.role = "alert";
   const submit = element("button", "chief", words("probe_send"));
   submit.type = "submit";
-  form.append(element("p", "soft", words("probe_about")), group, problem, element("div", "actions", submit));
+  form.append(element("p", "soft", about), group, problem, element("div", "actions", submit));
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     const answer = read();

@@ -267,11 +267,12 @@ const PAGES = {
       offer.hidden = list !== null || isOver || skipInS !== 0 || Boolean(ofPair?.is_asked);
       showSkipOfPair(wish, isOver ? null : ofPair);
       list?.update(now, mayGoOn, isOver);
-      const number = isOver ? null : (probe?.number ?? null);
+      const number = probe?.number ?? null;
       if (number === asked) return;
       asked = number;
       const answer = (given) => send({ probe_answered: { probe: number, answer: given } });
-      probes.replaceChildren(...(number === null ? [] : [probeForm(probe.item, answer)]));
+      const about = isOver ? words("probe_about_end") : words("probe_about");
+      probes.replaceChildren(...(number === null ? [] : [probeForm(probe.item, about, answer)]));
     };
     const beside = list ? element("div", "beside", frame, list.shown) : frame;
     return [element("h1", "unseen", list ? words("tutorial") : words("mission")), over, wish, offer, beside, probes];

@@ -14,12 +14,19 @@ TYPES = {"text": "string", "whole number": "Int64", "real number": "Float64", "t
 FORMULA = r"^'(?='*[=+\-@\t\r\n])"
 
 
+# Tables may lie here as CSV and as Parquet. Each export writes its codebook last: the newer one tells which tables are.
+BOOKS = [book for book in (FOLDER / "codebook.csv", FOLDER / "codebook.parquet") if book.exists()]
+BOOK = max(BOOKS, key=lambda book: book.stat().st_mtime_ns, default=FOLDER / "codebook.parquet")
+
+
 def table(name):
     """One of: sessions, turns, actions, goals, questionnaires, codebook; social, where there were people."""
-    parquet = FOLDER / f"{name}.parquet"
-    if not (FOLDER / f"{name}.csv").exists():
-        return pd.read_parquet(parquet)
-    fields = pd.read_csv(FOLDER / "codebook.csv", dtype="string")
+    is_csv = BOOK.suffix == ".csv"
+    fields = pd.read_csv(BOOK, dtype="string") if is_csv else pd.read_parquet(BOOK)
+    if name not in set(fields["table"]):
+        raise FileNotFoundError(f"{name}: the last export to {FOLDER} has no such table")
+    if not is_csv:
+        return pd.read_parquet(FOLDER / f"{name}.parquet")
     fields = fields[(fields["table"] == name) & fields["type"].isin(TYPES)]
     types = {field: TYPES[kind] for field, kind in zip(fields["name"], fields["type"])} or "string"
     data = pd.read_csv(FOLDER / f"{name}.csv", dtype=types, keep_default_na=False, na_values=[""])

@@ -122,12 +122,22 @@ impl Played {
     /// # Errors
     /// [`PlayedError`].
     pub fn open_all(paths: &[PathBuf], catalog: &Catalog) -> Result<Vec<Self>, PlayedError> {
-        let mut all = paths.iter().map(|path| Self::open(path, catalog)).collect::<Result<Vec<_>, _>>()?;
-        for (played, name) in all.iter_mut().zip(names(paths)) {
-            played.name = name;
+        let (all, unread) = Self::open_readable(paths, catalog);
+        unread.into_iter().next().map_or(Ok(all), |(_, error)| Err(error))
+    }
+
+    /// The same of those that can be read; and the others, with the reason.
+    #[must_use]
+    pub fn open_readable(paths: &[PathBuf], catalog: &Catalog) -> (Vec<Self>, Vec<(PathBuf, PlayedError)>) {
+        let (mut all, mut unread) = (Vec::new(), Vec::new());
+        for (path, name) in paths.iter().zip(names(paths)) {
+            match Self::open(path, catalog) {
+                Ok(played) => all.push(Self { name, ..played }),
+                Err(error) => unread.push((path.clone(), error)),
+            }
         }
         carry_on(&mut all);
-        Ok(all)
+        (all, unread)
     }
 
     /// The session of a log that goes by that name.

@@ -67,6 +67,13 @@ fn tables_hold_what_was_counted_while_sessions_were_played() {
     assert_eq!(table(&tables, "actions").rows.len() as i64, done);
     assert_eq!(table(&tables, "goals").rows.len() as i64, column("goals").iter().sum::<i64>());
     let described = codebook(&tables);
+    // By its codebook the script finds what was exported last, and which tables there are.
+    let column = |name: &str| described.column(name).cloned().collect::<Vec<_>>();
+    let tables_of = column("table");
+    for name in tables.iter().map(|table| table.name).chain(["codebook"]) {
+        assert!(tables_of.contains(&Cell::Text(name.to_owned())), "{name} is not in {tables_of:?}");
+    }
+    assert!(NOTEBOOK.contains("st_mtime_ns") && NOTEBOOK.contains(r#"set(fields["table"])"#));
     let columns: usize = tables.iter().map(|table| table.fields.len()).sum();
     assert_eq!(described.rows.len(), columns + tables.len() + 1, "and the codebook itself");
     for table in tables.iter().chain([&described]) {
@@ -164,6 +171,22 @@ fn sessions_of_one_name_are_told_apart_by_the_folders_around_them() {
     let names = |played: Vec<Played>| played.into_iter().map(|one| one.name).collect::<Vec<_>>();
     assert_eq!(names(Played::open_all(&paths, &catalog).unwrap()), ["never/logs/cold_soda", "unsure/logs/cold_soda"]);
     assert_eq!(names(Played::open_all(&paths[..1], &catalog).unwrap()), ["cold_soda"]);
+}
+
+#[test]
+fn logs_that_cannot_be_read_keep_nobody_from_the_others() {
+    let log = sessions("export-unread", Asking::Never).remove(0).1.log.unwrap();
+    let folder = Path::new(FOLDER).join("export-unread");
+    let [empty, other] = ["empty.mcap", "other.mcap"].map(|name| folder.join(name));
+    fs::write(&empty, "").unwrap();
+    fs::write(&other, "no log").unwrap();
+    let catalog = Catalog::builtin();
+    let paths = [empty.clone(), log.clone(), other.clone()];
+    let (played, unread) = Played::open_readable(&paths, &catalog);
+    assert_eq!(played.len(), 1);
+    assert_eq!(unread.iter().map(|(path, _)| path).collect::<Vec<_>>(), [&empty, &other]);
+    assert!(unread.iter().all(|(path, error)| error.to_string().contains(&path.display().to_string())), "{unread:?}");
+    assert!(Played::open_all(&paths, &catalog).is_err());
 }
 
 /// A robot and a person who stand two metres apart for a second.

@@ -190,15 +190,20 @@ impl Live {
 impl Tables {
     fn run(&self) -> anyhow::Result<()> {
         let catalog = Arc::new(Catalog::builtin());
-        let played = Played::open_all(&self.logs, &catalog)?.into_iter();
+        let (played, unread) = Played::open_readable(&self.logs, &catalog);
         let moved = |log: &Log| movement(log, Arc::clone(&catalog));
-        let played: Vec<Played> = played.map(|one| one.with_movement(moved)).collect();
+        let played: Vec<Played> = played.into_iter().map(|one| one.with_movement(moved)).collect();
+        let reasons: Vec<String> = unread.iter().map(|(_, error)| error.to_string()).collect();
+        let reasons = reasons.join("\n  ");
+        anyhow::ensure!(!played.is_empty() || unread.is_empty(), "{reasons}");
         std::fs::create_dir_all(&self.out).with_context(|| self.out.display().to_string())?;
         let tables = cohabit_tables::tables(&played);
         for table in tables.iter().chain([&cohabit_tables::codebook(&tables)]) {
             let path = parquet::write(table, &self.out)?;
             println!("{} rows written to {}", table.rows.len(), path.display());
         }
+        let (left_out, all) = (unread.len(), self.logs.len());
+        anyhow::ensure!(unread.is_empty(), "{left_out} of {all} logs cannot be read, and are left out:\n  {reasons}");
         Ok(())
     }
 }

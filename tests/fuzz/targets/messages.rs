@@ -5,8 +5,8 @@
 use cohabit_bus::{
     Envelope,
     message::{
-        CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane, PulseMessage,
-        StateView, StepView, Thing, TickView, read,
+        CommandMessage, Control, ControlMessage, DialogView, EventMessage, FrameView, MissionMessage, Plane,
+        PulseMessage, StateView, StepView, Thing, TickView, read,
     },
 };
 use cohabit_cdf::Action;

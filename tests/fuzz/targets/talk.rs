@@ -45,7 +45,9 @@ fn check(understanding: &Understanding) {
             assert!(!steps.is_empty());
             reply
         }
-        Understanding::Question { text, .. } | Understanding::Answer { text, .. } | Understanding::Refusal { text, .. } => text,
+        Understanding::Question { text, .. }
+        | Understanding::Answer { text, .. }
+        | Understanding::Refusal { text, .. } => text,
         Understanding::Stop { reply, .. } => reply,
     };
     assert!(!says.is_empty());

@@ -37,7 +37,7 @@ def pack_missions(world: list[str]) -> list[tuple[str, str]]:
 
 def generate_missions(
     count: int, seed: int, types: Optional[list[str]], blockers: Optional[float], workers: int, world: list[str] = ...
-) -> list[str]:
+) -> tuple[list[str], list[tuple[str, int, str]]]:
     """Lines of a file of missions."""
 
 def part_missions(missions: list[tuple[str, str, list[str], list[str]]], share: float, seed: int) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,8 +14,13 @@ import numpy as np
 
 from . import _native
 
+_LOG = logging.getLogger("cohabit")
+
 _STREAM = 0x5317E
 """Keeps the draw of a mission apart from all else that follows from the same seed."""
+
+_MANIFEST = "manifest.json"
+"""What commands write beside the missions and episodes that they make; it is no mission itself."""
 
 World = Union[str, "os.PathLike[str]", Sequence[Union[str, "os.PathLike[str]"]]]
 """The folder of a world pack, or the name of one that comes with the program (``"homes"``), or several of them in their order, each of
@@ -172,7 +178,8 @@ def suite(path: Union[None, str, os.PathLike[str]] = None, *, world: World = ())
         return Suite(packed, folders)
     path = Path(path)
     if path.is_dir():
-        missions = [_of_cdf(file.stem, _read_json(file)) for file in sorted(path.glob("*.json"))]
+        files = [file for file in sorted(path.glob("*.json")) if file.name != _MANIFEST]
+        missions = [_of_cdf(file.stem, _read_json(file)) for file in files]
     elif path.suffix == ".jsonl":
         lines = [(number, line) for number, line in enumerate(_read(path).split("\n"), 1) if line.strip()]
         missions = [_of_line(line, f"{path}:{number}") for number, line in lines]
@@ -237,7 +244,8 @@ def generate(
     *,
     world: World = (),
 ) -> Suite:
-    """Makes missions up: each is checked, solved by the planner and played once. The same seed makes the same ones.
+    """Makes missions up: each is checked, solved by the planner and played once. The same seed makes the same ones. Types of which
+    drafts were given up, so that fewer of them are made, are told to the logger ``cohabit``, with the reason.
 
     :param types: of the built-in types, those that are made; all of them, if left out.
     :param blockers: the share of missions in which something stands in the way, from 0 to 1.
@@ -249,7 +257,9 @@ def generate(
     if blockers is not None and not 0.0 <= blockers <= 1.0:
         raise ValueError(f"a share of {blockers} blockers: from 0 to 1")
     folders, named = world_folders(world), None if types is None else list(types)
-    lines = _native.generate_missions(count, seed, named, blockers, workers or cores(), folders)
+    lines, given_up = _native.generate_missions(count, seed, named, blockers, workers or cores(), folders)
+    for kind, missed, reason in given_up:
+        _LOG.warning("%s: %s given up, the last because %s", kind, missed, reason)
     return Suite([_of_line(line, "generate") for line in lines], folders)
 
 

@@ -241,6 +241,7 @@ class Office:
         first = self._mission[0] if isinstance(self._mission, Suite) else self._mission
         self._played: Played = (first, None, None)
         self._randomize = randomize
+        self._beside = len(bodies) if many else None
         self._has_begun = False
         self._known: dict[int, set[int]] = {}
         self.mission_name, self.instruction = "", ""
@@ -274,6 +275,7 @@ class Office:
             seed = played[2]
         if played != self._played:
             name, text = mission_text(*played, packs=self.packs)
+            self._check_bodies(name, text)
             self.world.reset(seed, name, text)
             self._played = played
             self._told(name, text)
@@ -281,6 +283,18 @@ class Office:
             self.world.reset(seed)
         self._known.clear()
         self._has_begun = True
+
+    def _check_bodies(self, name: str, text: str) -> None:
+        """Raises ``ValueError`` if all bodies are played, and a mission has more or fewer of them than there are agents."""
+        robots = _robots(text)
+        if self._beside is None or robots is None:
+            return
+        count = robots + self._beside
+        if count != len(self.kinds):
+            raise ValueError(
+                f"mission `{name}` has {count} bodies, and this environment has {len(self.kinds)} agents: "
+                "play missions with as many robots in it, and others in an environment of their own"
+            )
 
     def names(self, body: int) -> Names:
         """What an action in words of a body may name."""
@@ -409,6 +423,16 @@ def packs_of(mission: MissionLike, world: Packs) -> list[str]:
 def as_it_is(mission: MissionLike) -> MissionLike:
     """A mission as it is now: whoever gave a dictionary may change it, and give it again."""
     return copy.deepcopy(dict(mission)) if isinstance(mission, Mapping) else mission
+
+
+def _robots(text: str) -> Optional[int]:
+    """How many robots a mission (CDF) has: one, if it does not say; nothing, where it cannot be read."""
+    try:
+        scene = json.loads(text.lstrip("\ufeff"))["scene"]
+        return max(1, len(scene.get("simbot_init") or ()))
+    except (AttributeError, KeyError, TypeError, ValueError):
+        # Whoever plays it says what is wrong with it.
+        return None
 
 
 def mission_text(

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Conversation, Outgoing, TurnEnd,
+    alone::ALONE,
     hearing::{Meaning, Words},
 };
 use crate::{
@@ -129,8 +130,15 @@ impl Conversation {
         knowledge: &Knowledge,
         outbox: &mut Vec<Outgoing>,
     ) {
-        (self.memory.context, self.memory.unsure) = (meaning.context, meaning.unsure);
-        self.react(turn, number, meaning.understanding, knowledge, outbox);
+        let Meaning { understanding, context, unsure, .. } = meaning;
+        self.memory.unsure = unsure;
+        if self.is_in_vain(&understanding, context.awaits()) {
+            // There is nothing to go on with: the conversation stays where it was.
+            let refusal = Understanding::Refusal { text: ALONE.to_owned(), is_lost: false };
+            return self.react(turn, number, refusal, knowledge, outbox);
+        }
+        self.memory.context = context;
+        self.react(turn, number, understanding, knowledge, outbox);
     }
 
     /// Holds back what was understood.

@@ -126,6 +126,22 @@ fn a_question_meanwhile_ends_nothing_that_the_robot_is_at() {
 }
 
 #[test]
+fn who_acts_on_its_own_says_so_and_answers() {
+    let knowledge = knowledge_with(&["Bowl_01"]);
+    let mut conversation = conversation().alone(true);
+    let later = "wait 10 seconds, then go to the main office";
+    for told in ["go to the main office", "stop", "stop, and go to the reception", later] {
+        let (turn, outbox) = conversation.hear(told, &knowledge);
+        assert_eq!(says(&outbox), alone::ALONE, "{told}");
+        assert!(!plans(&outbox) && !conversation.awaits(), "{told}: {outbox:?}");
+        assert!(outbox.contains(&Outgoing::TurnEnded { turn, end: TurnEnd::Refused }), "{told}: {outbox:?}");
+    }
+    let (turn, outbox) = conversation.hear("where is the bowl?", &knowledge);
+    assert!(!plans(&outbox) && says(&outbox).contains("bowl"), "{}", says(&outbox));
+    assert!(outbox.contains(&Outgoing::TurnEnded { turn, end: TurnEnd::Answered }));
+}
+
+#[test]
 fn what_is_put_off_is_done_when_its_time_has_come() {
     let (mut conversation, knowledge) = (conversation(), knowledge());
     let (_, outbox) = conversation.hear("wait 10 seconds, then go to the main office", &knowledge);

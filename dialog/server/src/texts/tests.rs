@@ -14,7 +14,12 @@ fn sources(part: PagePart) -> Vec<(String, String)> {
         PagePart::Study => (
             "runtime/study/web",
             &["wizard.html", "experimenter.html"],
-            &["runtime/study/src/registry.rs", "runtime/study/src/tutorial.rs", "runtime/study/src/web.rs"],
+            &[
+                "runtime/study/src/registry.rs",
+                "runtime/study/src/tutorial.rs",
+                "runtime/study/src/web.rs",
+                "runtime/study/src/web/refusals.rs",
+            ],
         ),
     };
     let files = fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
@@ -69,6 +74,17 @@ fn pages_say_in_each_other_language_that_the_robot_speaks_english() {
         for part in PagePart::ALL {
             let page = PageTexts::of(language).unwrap().page(part, html);
             assert!(page.contains(shown) && page.contains(&format!("lang=\"{language}\"")), "{page}");
+        }
+    }
+}
+
+#[test]
+fn texts_of_a_session_are_true_in_a_home_too() {
+    for language in languages() {
+        let texts = PageTexts::of(language).unwrap();
+        for (key, text) in texts.part(PagePart::Session) {
+            let words = ["office", "büro", "oficina"];
+            assert!(!words.iter().any(|word| text.to_lowercase().contains(word)), "{language}, {key}: {text}");
         }
     }
 }

@@ -331,6 +331,14 @@ fn where_all_seats_are_taken_a_page_that_never_said_a_word_gives_way() {
 }
 
 #[test]
+fn keys_of_offers_are_labelled_alike_on_german_and_french_keyboards() {
+    let script = include_str!("../../../web/driving.js");
+    let after = script.split_once("const OFFER_KEYS = [").expect("the page has such keys").1;
+    let keys = after.split_once(']').expect("they are a list").0;
+    assert!(keys.contains("\"E\"") && !keys.contains(['A', 'M', 'Q', 'W', 'Y', 'Z']), "{keys}");
+}
+
+#[test]
 fn a_page_that_takes_nothing_loses_its_seat() {
     let served = Served::new(ServerLimits { send: AT_ONCE, most_pages: 1, ..PATIENT });
     let (mut deaf, _) = served.open();

@@ -26,6 +26,9 @@ pub struct Dialog {
     /// A body whose robot people speak to; as often as there are
     #[arg(long = "robot", value_name = "BODY", default_value = "0")]
     robots: Vec<u32>,
+    /// A body whose robot acts on its own, whatever people tell it, and says so; as often as there are
+    #[arg(long = "on-its-own", value_name = "BODY")]
+    on_their_own: Vec<u32>,
 }
 
 impl Dialog {
@@ -47,7 +50,7 @@ impl Dialog {
 
     /// How the service is set up for a session with this seed and these cameras.
     fn config(&self, seed: u64, cameras: Vec<CameraRecord>) -> anyhow::Result<DialogConfig> {
-        let Self { joining, listening, robots, .. } = self;
+        let Self { joining, listening, robots, on_their_own, .. } = self;
         Ok(DialogConfig {
             session: joining.session.clone(),
             journal: Some(journal(&Session::new(&joining.session).map_err(bad_input)?)),
@@ -62,6 +65,7 @@ impl Dialog {
             consulting: listening.model,
             interpreter: Endpoint::from_environment().map_err(bad_input)?.map(|model| Box::new(model) as _),
             robots: robots.clone(),
+            on_their_own: on_their_own.clone(),
             names: listening.names.iter().map(|one| (one.body, one.name.clone())).collect(),
             drivable: listening.drive,
             seats: usize::from(listening.seats),

@@ -21,7 +21,7 @@ pub struct ThisProgram {
 #[command(no_binary_name = true)]
 struct PlayLine {
     #[command(flatten)]
-    _play: Play,
+    play: Play,
 }
 
 impl Program for ThisProgram {
@@ -36,15 +36,37 @@ impl Program for ThisProgram {
     }
 
     fn check_mission(&self, name: &str, world: Option<&WorldData>) -> Result<(), String> {
-        let world = world.unwrap_or_else(|| self.builtin.get_or_init(WorldData::builtin));
+        let world = self.world(world);
         let file = MissionFile::find_in(Some(name), world).map_err(|error| format!("{error:#}"))?;
         let catalog = Arc::clone(world.catalog());
         let plan = SessionPlan::new(&file.name, &file.text, catalog, 0).map_err(|error| error.to_string())?;
         plan.build().map(drop).map_err(|error| error.to_string())
     }
 
+    fn check_session(
+        &self,
+        arguments: &[String],
+        mission: &str,
+        folder: &Path,
+        world: Option<&WorldData>,
+    ) -> Result<(), String> {
+        let line = PlayLine::try_parse_from(arguments.iter().map(OsString::from));
+        let PlayLine { play } = line.map_err(|error| said(&error.to_string()))?;
+        let world = self.world(world);
+        let Ok(file) = MissionFile::find_in(Some(mission), world) else { return Ok(()) };
+        let plan = SessionPlan::new(&file.name, &file.text, Arc::clone(world.catalog()), 0);
+        plan.map_or(Ok(()), |plan| play.check_for(plan, folder).map_err(|error| format!("{error:#}")))
+    }
+
     fn pack_files(&self, folder: &Path) -> Result<Vec<PackFile>, String> {
         cohabit_engine::world_folder_files(folder).map_err(|error| format!("{error:#}"))
+    }
+}
+
+impl ThisProgram {
+    /// That of the study's packs, or the one that is built in.
+    fn world<'a>(&'a self, world: Option<&'a WorldData>) -> &'a WorldData {
+        world.unwrap_or_else(|| self.builtin.get_or_init(WorldData::builtin))
     }
 }
 
@@ -84,6 +106,24 @@ mod tests {
             let said = check(arguments).expect_err("a wrong argument");
             assert!(said.contains(part) && !said.contains('\n') && !said.contains("Usage"), "{said}");
             assert!(!said.contains("tip: to pass"), "{said}");
+        }
+    }
+
+    #[test]
+    fn sessions_are_those_whose_bodies_and_agents_a_mission_has() {
+        let check = |arguments: &[&str], mission: &str| {
+            let arguments: Vec<String> = arguments.iter().map(|one| (*one).to_owned()).collect();
+            ThisProgram::default().check_session(&arguments, mission, Path::new("/nowhere"), None)
+        };
+        assert_eq!(check(&["--agent=dialog", "--agent=helper@1", "--body=robot@Lab1"], "cold_soda"), Ok(()));
+        assert_eq!(check(&["--agent=helper@1"], "warm_soda"), Ok(()), "what is wrong with it is said of the mission");
+        for (arguments, part) in [
+            (&["--agent=dialog", "--agent=helper@1"][..], "`--agent helper@1`: there is no body 1"),
+            (&["--body=robot", "--agent=dialog", "--agent=scripted@1=walk.txt"], "/nowhere/walk.txt"),
+            (&["--name=2=Rosie"], "there is no body 2"),
+        ] {
+            let said = check(arguments, "cold_soda").expect_err("what the mission does not have");
+            assert!(said.contains(part), "{said}");
         }
     }
 

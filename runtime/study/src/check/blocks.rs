@@ -145,11 +145,16 @@ impl Checking<'_, '_> {
     /// Where a file of that name is, if there is one; else the name, which may be one of those that ship.
     fn beside(&mut self, name: &Spanned<String>, at: &Pointer) -> String {
         let path = self.folder.join(name.get_ref());
-        if !path.is_file() {
-            return name.get_ref().clone();
+        if path.is_file() {
+            self.file(name, at);
         }
-        self.file(name, at);
-        path.to_string_lossy().into_owned()
+        self.path(name.get_ref())
+    }
+
+    /// The same of a name that was looked at.
+    pub(super) fn path(&self, name: &str) -> String {
+        let path = self.folder.join(name);
+        if path.is_file() { path.to_string_lossy().into_owned() } else { name.to_owned() }
     }
 
     pub(super) fn mission(&mut self, name: &Spanned<String>, at: &Pointer) {

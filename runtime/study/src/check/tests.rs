@@ -28,6 +28,7 @@ impl Program for Stub {
             "--drive=all",
             "--agent=scripted@0=walk.txt",
             "--agent=scripted@0=run.txt",
+            "--agent=helper@1",
             "--questionnaire=after.toml",
             "--questionnaire=tlx",
         ];
@@ -49,6 +50,17 @@ impl Program for Stub {
         } else {
             Err(format!("there is no mission {name}"))
         }
+    }
+
+    fn check_session(
+        &self,
+        arguments: &[String],
+        mission: &str,
+        _: &Path,
+        _: Option<&WorldData>,
+    ) -> Result<(), String> {
+        let is_of_second = arguments.iter().any(|one| one == "--agent=helper@1");
+        if is_of_second && mission == "cereal" { Err("there is no body 1".to_owned()) } else { Ok(()) }
     }
 
     fn pack_files(&self, folder: &Path) -> Result<Vec<PackFile>, String> {
@@ -313,6 +325,11 @@ fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
         ("contact", "language = \"de\"\npage_texts = \"sheet.md\"\ncontact", "/page_texts: participants' pages are in"),
         ("contact", "block_size = 0\ncontact", "a block of 0 for 1 between-participants conditions"),
         ("contact", "settings = { paused = true }\ncontact", "the settings of ask = never do not go together"),
+        (
+            "settings = { ask = \"never\" }",
+            "settings = { agent = \"helper@1\" }",
+            "the settings of ask = never do not fit the mission cereal: there is no body 1; change one of them",
+        ),
         ("contact", "contact = \"x\"\ncontact", "duplicate key"),
         (
             "[[factor]]",

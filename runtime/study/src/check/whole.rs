@@ -127,20 +127,30 @@ impl Checking<'_, '_> {
         (*size.get_ref()).max(1)
     }
 
-    /// Whether `play` takes the settings of each session, which it may not though it takes each flag alone.
+    /// Whether `play` takes the settings of each session, which it may not though it takes each flag alone, or not with that mission.
     fn combinations(&mut self, study: &Study, written: &Written, blocks: &[(Range<usize>, Pointer)]) {
         let factors = written.factor.first().map(|factor| (factor.span(), Pointer::default().key("factor")));
         for (block, place) in study.blocks.iter().zip(blocks) {
             for (between, within) in conditions_of(study, block) {
-                let settings = study.settings_of(block, &between, &within);
-                let Err(problem) = self.program.check_arguments(&arguments(&settings)) else { continue };
+                let arguments = arguments(&study.settings_of(block, &between, &within));
+                let Err(problem) = self.plays(&arguments, study.missions_of(block)) else { continue };
                 let level = |choice: &Choice| format!("{} = {}", choice.factor, choice.level);
                 let levels: Vec<_> = between.choices.iter().chain(&within.choices).map(level).collect();
                 let of = if levels.is_empty() { "this block".to_owned() } else { levels.join(", ") };
                 let (span, pointer) = factors.as_ref().filter(|_| !levels.is_empty()).unwrap_or(place);
-                let message = format!("the settings of {of} do not go together: {problem}");
+                let message = format!("the settings of {of} do not {problem}");
                 self.findings.add(span.clone(), pointer, message, "change one of them");
             }
         }
+    }
+
+    /// Whether `play` takes these arguments, with each of the missions.
+    fn plays(&self, arguments: &[String], missions: &[String]) -> Result<(), String> {
+        let (program, world) = (self.program, self.world.as_ref());
+        program.check_arguments(arguments).map_err(|problem| format!("go together: {problem}"))?;
+        missions.iter().try_for_each(|mission| {
+            let checked = program.check_session(arguments, &self.path(mission), self.folder, world);
+            checked.map_err(|problem| format!("fit the mission {mission}: {problem}"))
+        })
     }
 }

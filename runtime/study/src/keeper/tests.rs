@@ -343,6 +343,46 @@ fn a_probe_comes_when_it_is_due_and_its_answer_is_in_the_tables() {
 }
 
 #[test]
+fn what_is_asked_at_the_goal_that_completes_a_mission_is_answered_before_the_study_goes_on() {
+    let mut case = Case::new("probe-last");
+    let probe = "\n[[probe]]\nquestionnaire = 'trust.toml'\nat = 'goal_met'\n";
+    let _ = case.scratch.write("trust.toml", "title = 'T'\n[[item]]\nask = 'Trust?'\nscale = { least = 1, most = 5 }");
+    let _ = case.scratch.write("study.toml", &format!("{STUDY}{probe}"));
+    case.start_again();
+    let place = case.enrol();
+    let ended = |case: &mut Case, ago: Duration| {
+        let live = case.registry().participants.get_mut(&place).unwrap().live.as_mut().unwrap();
+        live.over = Some((Ending::Complete, Instant::now().checked_sub(ago).unwrap()));
+        case.look_after(1);
+    };
+    for mission in 0..2 {
+        case.apply(place, &Event::GoesOn);
+        (0..2).for_each(|_| case.look_after(1));
+        let met = [Happening::QuestionAsked, Happening::GoalMet];
+        case.stage.1.lock().unwrap().extend(met);
+        case.stage.set(mission, Look::Over(Ending::Complete));
+        case.look_after(1);
+        let page = case.registry().page(Who::Participant(place));
+        assert_eq!((&page["is_over"], &page["probe"]["number"]), (&true.into(), &0.into()), "{page}");
+        ended(&mut case, ENDING_SEEN);
+        assert_eq!(case.phase(place), Phase::At(mission, Doing::Playing));
+        if mission == 0 {
+            let event = Event::ProbeAnswered { probe: 0, answer: Some(Given::Value(4)) };
+            participants_event(case.registry(), place, &Sent { step: Some(1), event }).unwrap();
+            assert!(case.registry().page(Who::Participant(place))["probe"].is_null());
+            case.look_after(1);
+        } else {
+            // Who does not answer is not kept for ever.
+            ended(&mut case, LAST_ANSWER);
+        }
+        assert_eq!(case.phase(place), Phase::At(mission + 1, Doing::Ready));
+    }
+    let done = case.registry().participants[&place].progress.done().to_vec();
+    let answered = done.iter().map(|one| (one.ending, one.probed[0].answer.is_some())).collect::<Vec<_>>();
+    assert_eq!(answered, [(Some(Ending::Complete), true), (Some(Ending::Complete), false)]);
+}
+
+#[test]
 fn a_tutorial_waits_until_all_was_tried_and_goes_on_where_it_was() {
     let mut case = Case::new("tutorial");
     let exercise = |what: &str| format!("{{ what = '{what}', text = 'Try to {what}.' }}");
@@ -504,6 +544,39 @@ fn who_withdraws_while_playing_leaves_nothing_once_the_session_has_ended() {
     case.start_again();
     assert_eq!(case.registry().who(&token), None);
     assert_eq!(case.phase(other), Phase::At(0, Doing::Queued { again: true }));
+}
+
+#[test]
+fn who_comes_instead_of_somebody_takes_their_place_in_the_order() {
+    let mut case = Case::new("instead");
+    let levels = |case: &mut Case, place: u32| {
+        let plan = case.registry().participants[&place].progress.plan().clone();
+        (plan.order(), (0..2).map(|step| plan.choices(step)).collect::<Vec<_>>())
+    };
+    let places = [case.enrol(), case.enrol(), case.enrol()];
+    let first = levels(&mut case, places[0]);
+    assert_eq!((places, first.0), ([1, 2, 3], 1));
+    let excluded = Event::Excluded { reason: "did not listen".to_owned() };
+    case.apply(1, &excluded);
+    case.apply(2, &Event::Withdrew);
+    case.look_after(1);
+    let second = {
+        let plan = crate::assign::assign(&case.registry().study, 2);
+        (2, (0..2).map(|step| plan.choices(step)).collect::<Vec<_>>())
+    };
+    // Also after the server was started anew.
+    case.start_again();
+    let (fourth, fifth) = (case.enrol(), case.enrol());
+    assert_eq!((fourth, levels(&mut case, fourth)), (4, first.clone()));
+    assert_eq!((fifth, levels(&mut case, fifth)), (5, second));
+    assert_eq!(case.registry().participants[&3].progress.plan().stands_for, None);
+    // Who comes instead may leave, too; and a link beyond the plan, where nobody has left, has an order of its own.
+    case.apply(fourth, &excluded);
+    let sixth = case.enrol();
+    assert_eq!((sixth, levels(&mut case, sixth)), (6, first));
+    let registry = case.registry();
+    let seventh = registry.reserve(None).unwrap();
+    assert_eq!((seventh, registry.order(seventh)), (7, 7));
 }
 
 #[test]

@@ -188,7 +188,7 @@ impl<'a> Walk<'a> {
             return self.tutorial(index, &mission, session);
         }
         let (ending, played_s) = ending(session, mission.limits);
-        self.probes(index, &mission, session, played_s)?;
+        self.probes(index, &mission, session, (ending, played_s))?;
         let left_s = played_s - self.progress.played_s();
         self.plays(left_s)?;
         self.passes(if matches!(ending, Ending::Complete | Ending::Failed) { ENDING_SEEN_S } else { 0.0 });
@@ -267,7 +267,7 @@ impl<'a> Walk<'a> {
         index: usize,
         mission: &PlannedMission,
         session: &SimulatedSession,
-        played_s: f64,
+        (ending, played_s): (Ending, f64),
     ) -> Result<(), SimulateError> {
         let study = self.setting.study;
         if mission.is_practice || study.probes.is_empty() {
@@ -275,7 +275,12 @@ impl<'a> Walk<'a> {
         }
         let clocks = study.probes.iter().filter_map(|probe| probe.at.played_s()).map(|at| (at, None));
         let happenings = session.happened.iter().map(|(at, what)| (*at, Some(*what)));
-        let mut moments: Vec<_> = clocks.chain(happenings).filter(|(at, _)| *at < played_s).collect();
+        // The goal that completes a mission is met at its very end.
+        let is_last = |at: f64, what: Option<Happening>| {
+            ending == Ending::Complete && what == Some(Happening::GoalMet) && at <= played_s
+        };
+        let is_within = |(at, what): &(f64, Option<Happening>)| *at < played_s || is_last(*at, *what);
+        let mut moments: Vec<_> = clocks.chain(happenings).filter(is_within).collect();
         moments.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         for (at_s, what) in moments {
             let happened: Vec<Happening> = what.into_iter().collect();

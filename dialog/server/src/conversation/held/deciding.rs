@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Decided, Held};
 use crate::{
-    conversation::{Conversation, Outgoing, TurnEnd},
+    conversation::{Conversation, Outgoing, TurnEnd, alone::NOT_ORDERED},
     expression::FacialExpression,
     known::Knowledge,
     page::LineKind,
@@ -173,6 +173,7 @@ impl Conversation {
 
     /// What a wizard's plain request comes to; nothing is asked about it.
     fn order(&self, text: &str, knowledge: &Knowledge) -> Result<Order, String> {
+        self.takes_orders()?;
         let known = knowledge.known().ok_or(BLIND)?;
         let mut context = self.memory.context.clone();
         let understood = self.language.clone().asking(Asking::Never).understand(text, &known, &mut context);
@@ -185,8 +186,14 @@ impl Conversation {
         Ok(Order { text: text.to_owned(), steps, context, click: None })
     }
 
+    /// Says so, if nothing comes of orders.
+    fn takes_orders(&self) -> Result<(), String> {
+        if self.is_alone { Err(NOT_ORDERED.to_owned()) } else { Ok(()) }
+    }
+
     /// What a wizard clicked, as the robot does it.
     fn clicked(&self, click: Click, chosen_ms: Option<f64>, knowledge: &Knowledge) -> Result<Own, String> {
+        self.takes_orders()?;
         let known = knowledge.known().ok_or(BLIND)?;
         let action = click.action(|object| known.bearing_in_room_rad(object))?;
         let step = self.language.step(action, &known);

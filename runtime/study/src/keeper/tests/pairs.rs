@@ -284,3 +284,20 @@ fn nobody_comes_by_a_link_into_a_pair_that_was_left() {
     let refused = registry.enrol(index, "2", &[0, 1]).unwrap_err().to_string();
     assert!(refused.contains("us") && registry.participants.is_empty(), "{refused}");
 }
+
+#[test]
+fn a_pair_that_comes_instead_of_another_takes_its_place_in_the_order() {
+    let mut case = Case::of("pair-instead", PAIRS);
+    let places: Vec<u32> = (0..4).map(|_| case.enrol()).collect();
+    assert_eq!(places, [1, 2, 3, 4]);
+    case.apply(2, &Event::Withdrew);
+    (0..2).for_each(|_| case.look_after(1));
+    assert_eq!(case.phase(1), Phase::Parted);
+    for (place, order) in [(5, 1), (6, 2)] {
+        assert_eq!(case.enrol(), place);
+        let plan = case.registry().participants[&place].progress.plan().clone();
+        assert_eq!((plan.place, plan.order()), (place, order));
+        let instead = crate::assign::assign(&case.registry().study, order);
+        assert_eq!((plan.steps, plan.between), (instead.steps, instead.between));
+    }
+}
