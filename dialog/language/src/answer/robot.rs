@@ -3,7 +3,7 @@
 use cohabit_cdf::{ObjectId, RoomId};
 
 use crate::{
-    answer::{Answerer, NEIGHBOURS, claim::asked_state},
+    answer::{Answerer, NEIGHBOURS, claim::asked_state, things::says_name},
     context::awaited::Until,
     ground::want::Want,
     read::{phrase::Phrase, question::Question, slot, whether},
@@ -138,7 +138,7 @@ impl Answerer<'_> {
                 says => format!("I did not finish {says}: {cause}."),
             });
         }
-        let is_about_it = |why: &&String| is_denied || object.is_some_and(|id| why.contains(&self.short(id)));
+        let is_about_it = |why: &&String| is_denied || object.is_some_and(|id| says_name(why, &self.short(id)));
         if let Some(refused) = self.context.refused.as_ref().or(self.context.left_out.as_ref().filter(is_about_it)) {
             return Understanding::answer(refused);
         }

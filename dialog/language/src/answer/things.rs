@@ -231,7 +231,7 @@ impl Answerer<'_> {
 }
 
 /// Whether a sentence speaks of a thing by this name, and not by a longer one that begins so.
-fn says_name(text: &str, name: &str) -> bool {
+pub(super) fn says_name(text: &str, name: &str) -> bool {
     let ends = |(at, found): (usize, &str)| {
         text[at + found.len()..].chars().next().is_none_or(|next| !next.is_alphanumeric() && next != '-')
     };

@@ -80,10 +80,12 @@ fn interest(catalog: &Catalog, object: &KnownObject) -> Interest {
     let class = catalog.class(object.class);
     let is_part =
         object.works.is_some() && ![Property::Receptacle, Property::Powerable].iter().any(|one| class.has(*one));
-    match () {
-        () if class.has(Property::Pickupable) || !object.text.is_empty() => Interest::Carried,
-        () if is_part || !OF_USE.iter().any(|one| class.has(*one)) => Interest::Little,
-        () => Interest::Furniture,
+    if class.has(Property::Pickupable) || !object.text.is_empty() {
+        Interest::Carried
+    } else if is_part || !OF_USE.iter().any(|one| class.has(*one)) {
+        Interest::Little
+    } else {
+        Interest::Furniture
     }
 }
 

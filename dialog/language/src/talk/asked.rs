@@ -156,12 +156,6 @@ impl Conversation<'_> {
         context: &mut Context,
     ) -> Option<Understanding> {
         let mut then = Context { pending: pending.cloned(), later: Vec::new(), ..context.clone() };
-        // `the second one, but without closing the dryer`
-        if let Some(Pending::Guess { guesses }) = &mut then.pending {
-            guesses
-                .iter_mut()
-                .for_each(|guess| *guess = self.without_denied(guess.clone(), rest).unwrap_or(guess.clone()));
-        }
         let understanding = match pending? {
             Pending::Lab { words: before, at } => {
                 let kind = room_kind::standing_at(self.lexicon, self.scene, before, *at)?;

@@ -29,7 +29,8 @@ impl Conversation<'_> {
     /// Whether it asks to put something and does not say where, or is no request that the grammar knows: `bring it back, it should be on the
     /// shelf` says where it is to be.
     fn leaves_open_where(&self, rest: &str) -> bool {
-        let parts = parts::parts(self.lexicon, self.catalog, &self.wording(rest).tidied);
+        let tidied = self.wording(rest).tidied;
+        let parts = parts::parts(self.lexicon, self.catalog, &tidied);
         let mut clauses = parts.iter().filter_map(|part| match part {
             Part::Clause(clause) => Some(clause),
             _ => None,
@@ -38,9 +39,8 @@ impl Conversation<'_> {
             clause.places.is_empty()
                 && (matches!(clause.intent, Intent::Place | Intent::Drop) || clause.manner.is_some())
         };
-        let asks = rest.trim_end().ends_with('?')
-            || clauses.clone().next().is_some()
-            || !self.small(&self.wording(rest).tidied).is_empty();
+        let asks =
+            rest.trim_end().ends_with('?') || clauses.clone().next().is_some() || !self.small(&tidied).is_empty();
         !asks || clauses.any(is_open)
     }
 

@@ -252,8 +252,7 @@ impl Conversation<'_> {
             if let Some(room) = other.and_then(|id| self.scene.object(id)).map(|object| object.room) {
                 target.likely_in(room, self.catalog).into_iter().for_each(|likely| *likely *= 10.0);
             } else {
-                let rooms = self.habits.by_room(self.catalog, &classes_of(&relation.to));
-                target.likely.iter_mut().zip(rooms).for_each(|(likely, share)| *likely *= share);
+                self.weigh_by_place(&relation.to, &mut target);
             }
             target.at = target.at.or(other.filter(|_| relation.kind == RelationKind::Inside));
         }
@@ -266,13 +265,18 @@ impl Conversation<'_> {
         target.hinted.extend(hint.room.or(hint.is_here.then_some(self.scene.robot.room)));
         for relation in hint.relations.iter().filter(|relation| !relation.to.is_floor) {
             let Some(other) = self.only_one(&relation.to, hint.room) else {
-                let rooms = self.habits.by_room(self.catalog, &classes_of(&relation.to));
-                target.likely.iter_mut().zip(rooms).for_each(|(likely, share)| *likely *= share);
+                self.weigh_by_place(&relation.to, target);
                 continue;
             };
             target.at = target.at.or(Some(other));
             target.hinted.extend(self.scene.object(other).map(|object| object.room));
         }
+    }
+
+    /// What is by something that was not seen yet is likely where such things usually are.
+    fn weigh_by_place(&self, place: &Phrase, target: &mut Target) {
+        let rooms = self.habits.by_room(self.catalog, &classes_of(place));
+        target.likely.iter_mut().zip(rooms).for_each(|(likely, share)| *likely *= share);
     }
 
     /// The one thing that it means, in that room if one was said.
