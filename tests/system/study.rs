@@ -1,9 +1,11 @@
 //! A study from its file to its data: two participants, pages, a killed session, a killed server, a withdrawal.
 
 mod accessible;
+mod frictionless;
 mod pages;
 mod pairs;
 mod practice;
+mod six;
 mod wizard;
 
 use std::{
@@ -483,12 +485,34 @@ fn missions_that_the_planner_does_not_solve_are_named() {
 fn links_let_in_and_nothing_else_does() {
     let scratch = study("study-links");
     let server = Server::start(&scratch, "0");
-    for path in ["/", "/p/x", "/p/x/state", "/sign-up/x", "/experimenter/x", "/experimenter/x/state", "/nowhere"] {
+    for path in [
+        "/",
+        "/p/x",
+        "/p/x/state",
+        "/sign-up/x",
+        "/experimenter/x",
+        "/observer/x",
+        "/observer/x/state",
+        "/experimenter/x/state",
+        "/nowhere",
+    ] {
         let (head, body) = server.request("GET", path, "");
         assert!(head.starts_with("HTTP/1.1 404"), "{path}: {head}\n{body}");
     }
     let (head, _) = server.request("GET", &server.experimenter.replace("experimenter", "p"), "");
     assert!(head.starts_with("HTTP/1.1 404"), "{head}");
+    // Who observes learns all but what lets somebody in, and changes nothing.
+    let person = Person::sign_up(&server);
+    person.agree(&server);
+    let observer = server.get(&format!("{}/state", server.experimenter))["observer"].as_str().unwrap().to_owned();
+    let seen = server.get(&format!("{observer}/state"));
+    let row = &seen["participants"][0];
+    assert_eq!((&row["participant"], &row["progress"], &row["link"]), (&json!("P01"), &json!("ready"), &Value::Null));
+    assert!(!seen.to_string().contains(&person.link) && !seen.to_string().contains(&server.sign_up), "{seen}");
+    for path in [format!("{observer}/command"), observer.replace("observer", "experimenter") + "/command"] {
+        let (head, _) = server.request("POST", &path, "\"reserve\"");
+        assert!(head.starts_with("HTTP/1.1 404"), "{path}: {head}");
+    }
     let mut stream = TcpStream::connect(&server.host).unwrap();
     write!(stream, "GET {} HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n", server.experimenter).unwrap();
     let mut text = String::new();

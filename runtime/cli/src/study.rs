@@ -2,10 +2,13 @@
 
 mod activities;
 mod data;
+mod health;
+mod pausing;
 mod plan;
 mod ports;
 mod program;
 mod report;
+mod results;
 mod sessions;
 mod simulate;
 mod solving;
@@ -27,7 +30,7 @@ use anyhow::Context as _;
 use cohabit_cdf::WorldData;
 use cohabit_dialog::{Consulting, Endpoint};
 use cohabit_study::{
-    Cycle, Folder, FolderError, Records, Registry, StudyFile, StudyService, export, keep,
+    Cycle, Folder, FolderError, Records, Registry, StudyFile, StudyService, day, export, keep,
     settings::{Setting, Settings},
 };
 use cohabit_tables::tables;
@@ -132,6 +135,9 @@ struct Export {
     /// Have sessions and missions for practice in the tables, too, marked as such
     #[arg(long)]
     practice: bool,
+    /// Write a summary by the study's conditions, plots (SVG), a script for pandas and the methods sheet beside the tables, too
+    #[arg(long)]
+    summary: bool,
 }
 
 impl Study {
@@ -159,7 +165,29 @@ fn read(path: &Path) -> anyhow::Result<(StudyFile, cohabit_study::Study)> {
 /// The study that is kept in a folder of data.
 fn kept(folder: &Path) -> anyhow::Result<(StudyFile, cohabit_study::Study)> {
     let file = Folder::study_file(folder);
-    if file.is_file() { read(&file) } else { Err(bad_input(FolderError::NoStudy { path: folder.to_owned() })) }
+    if !file.is_file() {
+        return Err(bad_input(FolderError::NoStudy { path: folder.to_owned() }));
+    }
+    let (file, study) = read(&file)?;
+    tell_kept_too_long(&study, folder);
+    Ok((file, study))
+}
+
+/// What is to be said of the data in a folder on a day after the last one on which they were to be kept.
+fn kept_too_long(study: &cohabit_study::Study, folder: &Path, today: &str) -> Option<String> {
+    let until = study.keep_until.as_deref().filter(|until| *until < today)?;
+    Some(format!(
+        "the data in {} were to be kept until {until}: delete that folder, and tables that were exported from it",
+        shown(folder.display())
+    ))
+}
+
+fn tell_kept_too_long(study: &cohabit_study::Study, folder: &Path) {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let today = day(u64::try_from(since.as_millis()).unwrap_or_default());
+    if let Some(note) = kept_too_long(study, folder, &today) {
+        eprintln!("cohabit: {note}");
+    }
 }
 
 /// What the sessions of a study were played in whose files lie in a folder.
@@ -205,6 +233,9 @@ impl Check {
         if let Some(note) = study.wizard_note() {
             println!("note: {note}");
         }
+        if study.keep_until.is_none() {
+            println!("note: `keep_until` does not say until when data of participants are kept");
+        }
         if let Some(note) = no_model(study, Endpoint::from_environment().is_ok_and(|model| model.is_some())) {
             println!("note: {note}");
         }
@@ -230,6 +261,7 @@ impl Run {
         }
         let (most_sessions, identity) = (self.most_sessions()?, self.site.identity()?);
         ensure_room()?;
+        tell_kept_too_long(&study, &self.folder);
         let mut files = study.files.clone();
         files.insert("study.toml".to_owned(), file.text);
         let folder = Folder::begin(&self.folder, &files).map_err(refused)?;
@@ -254,6 +286,7 @@ impl Run {
         println!("Running \"{}\" with data in {}", shown(title), shown(self.folder.display()));
         println!("Experimenter's page: {site}{}", doors.experimenter);
         println!("Sign-up link:        {site}{}", doors.sign_up);
+        println!("Observers' page:     {site}{}", doors.observer);
         if let Some(wizard) = &doors.wizard {
             println!("Wizard's seat:       {site}{wizard}");
         }
@@ -340,7 +373,12 @@ impl Export {
         for path in export(&records, tables(&read.played), self.practice, &self.out)? {
             println!("{}", shown(path.display()));
         }
-        read.check()
+        // What is wrong with some logs is told at the end: all that can be made is made of the others.
+        let checked = read.check();
+        if self.summary {
+            results::write(&records.study, &records.progress, read.played, &self.folder, &self.out)?;
+        }
+        checked
     }
 }
 
@@ -374,9 +412,17 @@ mod tests {
     }
 
     #[test]
+    fn data_that_were_to_be_deleted_are_named() {
+        let study = cohabit_study::Study { keep_until: Some("2031-12-31".to_owned()), ..Default::default() };
+        let said = |today: &str| kept_too_long(&study, Path::new("data"), today);
+        assert_eq!((said("2030-01-01"), said("2031-12-31")), (None, None));
+        assert!(said("2032-01-01").is_some_and(|said| said.contains("data were to be kept until 2031-12-31: delete")));
+    }
+
+    #[test]
     fn a_folder_without_a_study_is_named() {
         let folder = PathBuf::from("/nowhere/data");
-        let export = Export { folder: folder.clone(), out: folder.clone(), practice: false };
+        let export = Export { folder: folder.clone(), out: folder.clone(), practice: false, summary: false };
         for said in [export.run(), Report { folder, out: None }.run()] {
             let said = said.expect_err("no study").to_string();
             assert!(said.contains("/nowhere/data holds no study: name the folder that was given to"), "{said}");

@@ -1,6 +1,7 @@
 //! Reads `study.toml`, and says all that is wrong in it.
 
 mod blocks;
+mod codes;
 mod language;
 mod minimisation;
 mod pairs;
@@ -32,6 +33,7 @@ use crate::{
     design::{Completion, ConsentBox, Factor, Level, Sheet, Study},
     findings::Findings,
     instrument::Instrument,
+    parameters::places,
     settings::{self, OF_PAGES, RECORD_AUDIO, Setting, Settings, WIZARD, arguments},
     shape::STUDY,
     written::{self, Words, Written, WrittenBox, WrittenFactor, WrittenSettings, WrittenSheet},
@@ -220,12 +222,14 @@ impl Checking<'_, '_> {
         let pairing = self.pairing(written);
         let factors = self.factors(&written.factor, pairing.is_some(), &root.key("factor"));
         let wizard = self.wizard(written.wizard.as_ref());
+        let codes = self.codes(&written.code, &root.key("code"));
         let minimisation = self.minimisation(written.minimisation.as_ref(), &factors, &blocks);
         let mut study = Study {
             pairing,
             probes,
             worlds,
             wizard,
+            codes,
             minimisation,
             page_texts,
             page_texts_file,
@@ -234,6 +238,7 @@ impl Checking<'_, '_> {
             consents: boxes(&written.consent),
             settings: self.settings(&written.settings, &root.key("settings")),
             factors,
+            keep_until: self.keep_until(written.keep_until.as_ref()),
             completion: self.completion(written),
             missions: written.missions.as_ref().map(|missions| words(missions.get_ref())).unwrap_or_default(),
             assignment: written.assignment.as_ref().map(|assignment| *assignment.get_ref()).unwrap_or_default(),
@@ -366,6 +371,17 @@ impl Checking<'_, '_> {
         text.clone()
     }
 
+    /// The day until which data are kept.
+    fn keep_until(&mut self, day: Option<&Spanned<String>>) -> Option<String> {
+        let day = day?;
+        if !is_day(day.get_ref()) {
+            let message = format!("`{}` is no day", day.get_ref());
+            let remedy = "write year, month and day, such as \"2031-12-31\"";
+            self.findings.add(day.span(), &Pointer::default().key("keep_until"), message, remedy);
+        }
+        Some(day.get_ref().clone())
+    }
+
     fn completion(&mut self, written: &Written) -> Option<Completion> {
         match (&written.completion_code, &written.return_url) {
             (Some(code), None) => Some(Completion::Code(code.get_ref().clone())),
@@ -378,6 +394,10 @@ impl Checking<'_, '_> {
                         message,
                         "begin it with https://",
                     );
+                }
+                if let Err(problem) = places(url.get_ref()) {
+                    let remedy = "such as https://example.org/back?survey_code={survey_code}";
+                    self.findings.add(url.span(), &Pointer::default().key("return_url"), problem, remedy);
                 }
                 Some(Completion::Return(url.get_ref().clone()))
             }
@@ -402,6 +422,20 @@ fn boxes(consent: &WrittenSheet) -> Vec<ConsentBox> {
         all.iter().map(one).collect()
     };
     [of(&consent.required, true), of(&consent.optional, false)].concat()
+}
+
+/// Whether a text is a day as `2031-12-31`: such texts are in the order of the days.
+fn is_day(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let [year, month, day] = parts[..] else { return false };
+    let number = |part: &str, digits: usize| {
+        let is_number = part.len() == digits && part.bytes().all(|byte| byte.is_ascii_digit());
+        if is_number { part.parse::<u32>().ok() } else { None }
+    };
+    let (year, month, day) = (number(year, 4), number(month, 2), number(day, 2));
+    year.is_some()
+        && month.is_some_and(|month| (1..=12).contains(&month))
+        && day.is_some_and(|day| (1..=31).contains(&day))
 }
 
 fn words(all: &Words) -> Vec<String> {

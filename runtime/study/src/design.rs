@@ -54,12 +54,16 @@ pub struct Study {
     pub probes: Vec<Probe>,
     /// How a wizard takes part in the sessions that have one.
     pub wizard: Wizard,
+    /// What the experimenter notes by a key.
+    pub codes: Vec<Code>,
     /// What participants read on their pages, beside the study's own texts.
     pub page_texts: PageTexts,
     /// Where those lie, if in a file of the study.
     pub page_texts_file: Option<String>,
     /// What participants read at the end, in Markdown.
     pub debriefing: Option<String>,
+    /// The last day on which data of participants are kept, such as `2031-12-31`, if the study says so.
+    pub keep_until: Option<String>,
     /// What shows that somebody took part.
     pub completion: Option<Completion>,
     /// The questionnaires that blocks ask, each once.
@@ -105,6 +109,15 @@ pub struct ConsentBox {
     pub is_required: bool,
     /// Whether who agrees to it may be heard by a microphone.
     pub audio: bool,
+}
+
+/// Something that the experimenter notes by a key.
+#[derive(Clone, Debug, Eq, PartialEq, Serialize)]
+pub struct Code {
+    /// The key: a small letter or a digit.
+    pub key: char,
+    /// The note.
+    pub text: String,
 }
 
 /// How the order of within-participant conditions is assigned.

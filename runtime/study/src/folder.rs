@@ -372,7 +372,8 @@ impl Folder {
         }
         remove(&self.consent_path(place))?;
         let mut links = self.links()?;
-        if links.participants.remove(&place).is_some() {
+        let (token, back) = (links.participants.remove(&place), links.back.remove(&place));
+        if token.is_some() || back.is_some() {
             let path = self.links_path();
             links.save(&path).map_err(|source| failed(&path, source))?;
         }

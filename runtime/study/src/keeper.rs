@@ -148,11 +148,12 @@ impl Registry {
         self.ending.retain_mut(|playing| !matches!(playing.look(), Look::Gone(_)));
     }
 
-    /// What is new of a participant's session. Time counts while its page is there, and the participant's too.
+    /// What is new of a participant's session. Time counts while its page is there, and the participant's too, and it does not stand still.
     fn look_at(&mut self, place: u32) -> Option<News> {
         if self.is_left(place) {
             return Some(News::Interrupted("nobody has been at its page for a long time".to_owned()));
         }
+        let stands_still = self.stands_still(place);
         let participant = self.participants.get_mut(&place)?;
         let (is_here, left_s) = (participant.is_here(), participant.progress.left_s());
         let live = participant.live.as_mut()?;
@@ -170,9 +171,10 @@ impl Registry {
                 participant.failed = None;
                 let is_new = live.page.replace(page).is_none();
                 live.looked = if is_new { now } else { live.looked };
+                live.playing.hold(stands_still);
             }
         }
-        if is_here && live.over.is_none() {
+        if is_here && !stands_still && live.over.is_none() {
             live.unsaved_s += (now - live.looked).min(LOOK_EVERY * 10).as_secs_f64();
         }
         live.looked = now;

@@ -18,7 +18,7 @@
 //! - Score and clock are shown to participants only where a setting says so; figures for developers never are.
 //! - A practice is played under no condition, and exported tables leave it out.
 //! - A tutorial goes on until each of its exercises was tried, or its time is up; what was tried, its session tells.
-//! - A probe is asked once in a mission, while it goes on, and no other one before it is answered.
+//! - A probe is asked once in a mission, which goes on meanwhile or stands still, and no other one before it is answered.
 //! - What is filled in of a questionnaire is kept as it is typed, and is no answer before it is sent.
 //! - Two participants of a pair have the same conditions, and play each mission in one session, at a page each; what they answer is each
 //!   one's own. Nobody is waited for without end, and who withdraws takes the pair's sessions along.
@@ -45,6 +45,7 @@ mod check;
 mod company;
 mod cycle;
 pub mod design;
+mod experimenter;
 mod findings;
 mod folder;
 mod instrument;
@@ -55,6 +56,7 @@ mod markdown;
 mod minimise;
 mod pages;
 pub mod pair;
+mod parameters;
 mod plan;
 mod probe;
 mod progress;
@@ -73,6 +75,7 @@ pub mod square;
 mod tables;
 mod tutorial;
 mod web;
+mod windows;
 mod wizard;
 mod written;
 
@@ -89,9 +92,9 @@ pub use probe::{Happening, Moment, Probe, Probed};
 pub use progress::{Doing, Done, Effect, Ending, Event, Phase, Progress, Refused};
 pub use records::Records;
 pub use registry::{Registry, StudyFault};
-pub use report::{Apparatus, report};
+pub use report::{Apparatus, day, report};
 pub use schema::schema;
-pub use session::{Look, PageAddress, Player, Playing, Wanted};
+pub use session::{Health, Look, PageAddress, Player, Playing, Wanted};
 pub use simulate::{
     Answering, DryRun, Leaving, People, PeopleError, Shift, SimulateError, Simulated, SimulatedMission,
     SimulatedPlayer, SimulatedSession, Speaking, simulate,

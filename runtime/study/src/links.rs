@@ -14,10 +14,16 @@ pub struct Links {
     /// Of the wizard's page; made when it is first needed.
     #[serde(default)]
     pub wizard: String,
+    /// Of the observers' page; made when it is first needed.
+    #[serde(default)]
+    pub observer: String,
     /// Of the sign-up page.
     pub sign_up: String,
     /// Of each participant, by place.
     pub participants: BTreeMap<u32, String>,
+    /// What leads participants back to where they came from, by place: parameters of the links by which they came.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub back: BTreeMap<u32, BTreeMap<String, String>>,
     /// Whether they are of a dry run, which nobody opens.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub synthetic: bool,
@@ -32,16 +38,21 @@ impl Links {
         match fs::read(path) {
             Ok(bytes) => {
                 let mut links: Self = serde_json::from_slice(&bytes)?;
-                // An earlier version had no wizards.
-                if links.wizard.is_empty() {
-                    links.wizard = token::fresh()?;
+                // Earlier versions had no wizards, or no observers.
+                let is_whole = !links.wizard.is_empty() && !links.observer.is_empty();
+                for own in [&mut links.wizard, &mut links.observer].into_iter().filter(|own| own.is_empty()) {
+                    *own = token::fresh()?;
+                }
+                if !is_whole {
                     links.save(path)?;
                 }
                 Ok(links)
             }
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                let [experimenter, wizard, sign_up] = [token::fresh()?, token::fresh()?, token::fresh()?];
-                let links = Self { experimenter, wizard, sign_up, participants: BTreeMap::new(), synthetic };
+                let [experimenter, wizard, observer] = [token::fresh()?, token::fresh()?, token::fresh()?];
+                let sign_up = token::fresh()?;
+                let (participants, back) = (BTreeMap::new(), BTreeMap::new());
+                let links = Self { experimenter, wizard, observer, sign_up, participants, back, synthetic };
                 links.save(path)?;
                 Ok(links)
             }
@@ -89,6 +100,10 @@ mod tests {
         fs::write(&path, earlier).unwrap();
         let [first, second] = [Links::open(&path, false).unwrap(), Links::open(&path, false).unwrap()];
         assert!(first.wizard.len() == 32 && first.wizard == second.wizard && first.experimenter == links.experimenter);
+        let earlier = fs::read_to_string(&path).unwrap().replace("\"observer\"", "\"other\"");
+        fs::write(&path, earlier).unwrap();
+        let [third, fourth] = [Links::open(&path, false).unwrap(), Links::open(&path, false).unwrap()];
+        assert!(third.observer.len() == 32 && third.observer == fourth.observer && third.wizard == first.wizard);
         fs::write(&path, "{").unwrap();
         assert!(Links::open(&path, false).is_err(), "links that are lost are not made anew in silence");
     }

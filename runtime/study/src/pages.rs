@@ -23,7 +23,7 @@ impl Registry {
                 self.newcomers_page(self.newcomers.get(index).map_or(Reading::Information, |one| one.reading))
             }
             Who::Participant(place) => match self.participants.get(&place) {
-                Some(participant) => self.participants_page(participant),
+                Some(participant) => self.with_message(participant),
                 None => json!({ "page": "withdrawn" }),
             },
         };
@@ -44,15 +44,24 @@ impl Registry {
         }
     }
 
+    /// What a participant's page shows, and what the experimenter has told them.
+    fn with_message(&self, participant: &Participant) -> Value {
+        let mut page = self.participants_page(participant);
+        if let Some((number, text)) = &participant.told {
+            page["message"] = json!({ "number": number, "text": text });
+        }
+        page
+    }
+
     fn participants_page(&self, participant: &Participant) -> Value {
         let progress = &participant.progress;
         let Some((index, step, doing)) = progress.step_now() else {
             return match progress.phase() {
-                Phase::Finished => ended("finished", &self.study),
+                Phase::Finished => self.ended("finished", progress.plan().place),
                 // Everybody who took part is debriefed.
                 Phase::Excluded => json!({ "page": "excluded", "html": self.study.debriefing.as_deref().map(html) }),
                 Phase::Assigning => json!({ "page": "starting" }),
-                Phase::Parted => ended("parted", &self.study),
+                Phase::Parted => self.ended("parted", progress.plan().place),
                 _ => json!({ "page": "withdrawn" }),
             };
         };
@@ -81,6 +90,9 @@ impl Registry {
                     page["probe"] = self.open_probe(progress);
                 }
                 page["skip"] = self.skipped_by(progress.plan().place);
+                // Who is asked something sees that it waits for them; their partner does not.
+                let is_asked = !page["probe"].is_null();
+                page["is_paused"] = json!(!is_asked && self.stands_still(progress.plan().place));
                 page
             }
         };
@@ -90,6 +102,12 @@ impl Registry {
         page["step"] = json!(index + 1);
         page["steps"] = json!(progress.plan().steps.len());
         page
+    }
+
+    /// The last page of somebody whose answers are kept.
+    fn ended(&self, page: &str, place: u32) -> Value {
+        let text = self.study.debriefing.as_deref().map(html);
+        json!({ "page": page, "html": text, "completion": self.completion(place) })
     }
 
     /// What somebody waits for before a mission: a session, or their partner.
@@ -120,7 +138,8 @@ impl Registry {
         let probe = open.and_then(|open| Some((open.probe, self.study.probes.get(open.probe)?)));
         let item = probe
             .and_then(|(number, probe)| Some((number, self.study.questionnaire(&probe.questionnaire)?.items.first()?)));
-        item.map_or(Value::Null, |(number, item)| json!({ "number": number, "item": item }))
+        let pauses = |number: usize| self.study.probes.get(number).is_some_and(|probe| probe.pauses);
+        item.map_or(Value::Null, |(number, item)| json!({ "number": number, "item": item, "pauses": pauses(number) }))
     }
 
     /// What participants read in a block.
@@ -141,10 +160,12 @@ impl Registry {
             "planned": self.study.participants,
             "has_pairs": self.study.pairing.is_some(),
             "sign_up": format!("/sign-up/{}", self.links.sign_up),
+            "observer": format!("/observer/{}", self.links.observer),
             "wizard": self.study.has_wizard().then(|| format!("/wizard/{}", self.links.wizard)),
             "sessions": { "running": self.running(), "most": most },
             "participants": places.into_iter().map(|place| self.row(place)).collect::<Vec<_>>(),
             "notes": self.notes,
+            "codes": self.study.codes,
         })
     }
 
@@ -166,6 +187,19 @@ impl Registry {
         };
         let sessions: Vec<Value> = self.participants.iter().filter_map(session).collect();
         json!({ "title": self.study.title, "sessions": sessions })
+    }
+
+    /// What observers' pages show: the same as the experimenter's, but for what lets anybody in.
+    pub(crate) fn observed(&self, most: usize) -> Value {
+        let mut page = self.overview(most);
+        page["is_observed"] = json!(true);
+        for link in ["sign_up", "observer", "wizard"] {
+            page[link] = Value::Null;
+        }
+        for row in page["participants"].as_array_mut().into_iter().flatten() {
+            row["link"] = Value::Null;
+        }
+        page
     }
 
     fn row(&self, place: u32) -> Value {
@@ -194,6 +228,8 @@ impl Registry {
             row["mission"] = json!(mission.mission);
             row["now"] = json!(levels(&mission.within));
             row["played_s"] = json!(progress.played_s() + participant.live.as_ref().map_or(0.0, |live| live.unsaved_s));
+            row["is_paused"] = json!(participant.is_paused());
+            row["health"] = json!(participant.live.as_ref().map(|live| live.playing.health()));
             let lacks_wizard = |live: &Live| live.over.is_none() && live.playing.lacks_wizard();
             row["lacks_wizard"] = json!(participant.live.as_ref().is_some_and(lacks_wizard));
         }
@@ -217,12 +253,6 @@ fn within_levels(plan: &Plan) -> Vec<String> {
 
 fn shown_box(one: &ConsentBox) -> Value {
     json!({ "text": one.text, "is_required": one.is_required })
-}
-
-/// The last page of somebody whose answers are kept.
-fn ended(page: &str, study: &Study) -> Value {
-    let text = study.debriefing.as_deref().map(html);
-    json!({ "page": page, "html": text, "completion": study.completion })
 }
 
 /// The session of a mission. How much time is left is told only if the study shows a clock.

@@ -1,4 +1,4 @@
-//! Probes: single questions that are asked while a mission is played, which goes on meanwhile.
+//! Probes: single questions that are asked while a mission is played, which goes on meanwhile or stands still.
 
 use cohabit_dialog::Given;
 
@@ -9,6 +9,8 @@ pub struct Probe {
     pub questionnaire: String,
     /// When it is asked.
     pub at: Moment,
+    /// Whether the mission stands still until it is answered.
+    pub pauses: bool,
 }
 
 /// When a probe is asked.
@@ -112,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_probe_is_asked_once_and_alone() {
-        let probe = |at| Probe { questionnaire: "trust".to_owned(), at };
+        let probe = |at| Probe { questionnaire: "trust".to_owned(), at, pauses: false };
         let probes = [probe(Moment::Happens(Happening::GoalMet)), probe(Moment::Played(60.0))];
         let asked = |probe, answer| Probed { probe, asked_ms: 5, answer };
         assert_eq!(due(&probes, &[], &[], 59.0), None);

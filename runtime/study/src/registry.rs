@@ -48,6 +48,8 @@ pub(crate) struct Participant {
     journal: Journal,
     /// When their page was last heard of.
     pub seen: Option<Instant>,
+    /// What the pages that were opened by their link call themselves, the newest last.
+    pub pages: Vec<String>,
     /// The session that they play.
     pub live: Option<Live>,
     /// When a session may be started for them again.
@@ -60,6 +62,10 @@ pub(crate) struct Participant {
     pub waits_since: Option<Instant>,
     /// The step of the mission that they want to skip, which their partner has not agreed to yet.
     pub skip_wanted: Option<usize>,
+    /// The step of the mission that the experimenter has paused.
+    pub paused: Option<usize>,
+    /// What the experimenter told them last, and how many messages of theirs that makes.
+    pub told: Option<(u32, String)>,
 }
 
 /// A session that is played.
@@ -88,7 +94,7 @@ pub(crate) struct Newcomer {
     place: Option<u32>,
     pub reading: Reading,
     /// The parameters of their link that the study asks for.
-    parameters: BTreeMap<String, String>,
+    pub parameters: BTreeMap<String, String>,
 }
 
 /// What a newcomer's page shows.
@@ -235,21 +241,6 @@ impl Registry {
         self.newcomers.len() - 1
     }
 
-    /// Keeps what a newcomer's link tells of what the study assigns conditions by, until they agree.
-    pub(crate) fn tell(&mut self, index: usize, parameters: &BTreeMap<String, String>) {
-        let Some(minimisation) = &self.study.minimisation else { return };
-        let is_asked = |name: &String| {
-            let is_it =
-                |from: &CovariateSource| matches!(from, CovariateSource::Link { parameter, .. } if parameter == name);
-            minimisation.covariates.iter().any(|covariate| is_it(&covariate.from))
-        };
-        if let Some(newcomer) = self.newcomers.get_mut(index) {
-            newcomer.parameters.extend(
-                parameters.iter().filter(|(name, _)| is_asked(name)).map(|(name, value)| (name.clone(), value.clone())),
-            );
-        }
-    }
-
     /// What somebody does who agrees, as far as it can be known.
     fn plan(&self, place: u32, parameters: &BTreeMap<String, String>) -> Plan {
         let plan = match &self.study.minimisation {
@@ -391,6 +382,7 @@ impl Registry {
         let participant = pseudonym(place);
         let consent = Consent { participant, at_ms, version: version.to_owned(), agreed, declined };
         self.folder.keep_consent(place, &consent)?;
+        self.keep_way_back(place, &parameters)?;
         let plan = self.plan(place, &parameters);
         let agreed = Event::Consented { version: version.to_owned(), ticked, audio };
         let journal = Journal::begin(&self.folder.journal_path(place), &plan, &agreed, at_ms)?;
@@ -447,6 +439,7 @@ impl Registry {
         self.folder.withdraw(&pseudonym(place), self.clock.now_ms())?;
         self.participants.remove(&place);
         self.withdrawn.extend(self.links.participants.remove(&place));
+        self.links.back.remove(&place);
         self.gone.insert(place);
         self.notes = self.folder.notes()?;
         self.has_news = true;
@@ -460,12 +453,15 @@ impl Participant {
             progress,
             journal,
             seen: None,
+            pages: Vec::new(),
             live: None,
             retry_at: None,
             failed: None,
             queued: 0,
             waits_since: None,
             skip_wanted: None,
+            paused: None,
+            told: None,
         }
     }
 

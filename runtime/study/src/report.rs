@@ -9,6 +9,8 @@ mod questionnaires;
 mod riek;
 mod wizard;
 
+pub use participants::day;
+
 use std::{
     collections::{BTreeMap, BTreeSet},
     fmt::Write as _,

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde::Serialize;
+
 use crate::{
     design::Study,
     pair::{pair_called, pair_label, pair_of},
@@ -60,6 +62,17 @@ pub enum Look {
     Gone(String),
 }
 
+/// How well a session runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Health {
+    /// The share of its last ticks that began a whole tick too late, 0 to 1; nothing, if there were none.
+    pub missed: Option<f64>,
+    /// From the newest words to the robot's answer, ms.
+    pub answered_ms: Option<f64>,
+    /// From these to its first motion, ms.
+    pub moved_ms: Option<f64>,
+}
+
 /// Plays sessions.
 pub trait Player: Send {
     /// Starts one.
@@ -84,6 +97,14 @@ pub trait Playing: Send {
     /// Whether a wizard is to take part, and nobody sits at the seat.
     fn lacks_wizard(&self) -> bool {
         false
+    }
+
+    /// Has its world stand still, or go on; this is told again and again.
+    fn hold(&mut self, _stands_still: bool) {}
+
+    /// How well it runs.
+    fn health(&self) -> Health {
+        Health::default()
     }
 
     /// Asks it to end; it is [`Look::Gone`] soon.

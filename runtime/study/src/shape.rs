@@ -127,8 +127,17 @@ pub const STUDY: &[Key] = &[
         Kind::Settings,
         "settings of all sessions: flags of `cohabit play`; and `score` and `clock`, true if participants are to see them",
     ),
+    optional(
+        "keep_until",
+        Kind::Text,
+        "the day until which data of participants are kept, such as 2031-12-31; the methods sheet says so, and `cohabit study` once it is over",
+    ),
     optional("completion_code", Kind::Text, "what participants are given at the end, to show that they took part"),
-    optional("return_url", Kind::Text, "where participants are led back to at the end"),
+    optional(
+        "return_url",
+        Kind::Text,
+        "where participants are led back to at the end; {survey_code} in it stands for what the link by which they came had as survey_code",
+    ),
     required("information", Kind::Table(SHEET), "what participants read first"),
     required("consent", Kind::Table(CONSENT), "what participants agree to"),
     optional("factor", Kind::Tables(FACTOR), "a factor of the design"),
@@ -139,6 +148,12 @@ pub const STUDY: &[Key] = &[
         Kind::Table(WIZARD),
         "how a wizard (Wizard of Oz) takes part in sessions with the setting wizard = \"yes\"",
     ),
+    optional("code", Kind::Tables(CODE), "what the experimenter notes by a key, on the experimenter's page"),
+];
+
+const CODE: &[Key] = &[
+    required("key", Kind::Text, "the key: a small letter or a digit"),
+    required("text", Kind::Text, "the note, such as: thinks aloud"),
 ];
 
 const PAIR: &[Key] = &[
@@ -189,6 +204,7 @@ const PROBE: &[Key] = &[
     required("questionnaire", Kind::Text, "a questionnaire of one item: one that ships, or a file"),
     required("at", Kind::OneOf(&Moment::NAMES), "when it is asked; minutes: when the mission was played for so long"),
     optional("minutes", Kind::Minutes, "of a probe at minutes: after how many"),
+    optional("pause", Kind::Switch, "whether the mission stands still until it is answered; it goes on, if absent"),
 ];
 
 const MINIMISATION: &[Key] = &[

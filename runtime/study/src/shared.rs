@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::{
     probe::Happening,
-    session::{Look, PageAddress, Playing},
+    session::{Health, Look, PageAddress, Playing},
     tutorial::Activity,
 };
 
@@ -20,6 +20,8 @@ struct Seat {
     happened: Vec<Happening>,
     /// Whether who had it has left.
     has_left: bool,
+    /// Whether the world is to stand still for them.
+    holds: bool,
 }
 
 /// The part of one of them.
@@ -77,6 +79,17 @@ impl Playing for Part {
         self.lock().playing.lacks_wizard()
     }
 
+    fn hold(&mut self, stands_still: bool) {
+        let mut shared = self.lock();
+        shared.seats[self.seat].holds = stands_still;
+        let is_held = shared.seats.iter().any(|seat| seat.holds && !seat.has_left);
+        shared.playing.hold(is_held);
+    }
+
+    fn health(&self) -> Health {
+        self.lock().playing.health()
+    }
+
     fn end(&mut self) {
         let mut shared = self.lock();
         shared.seats[self.seat].has_left = true;
@@ -95,6 +108,7 @@ mod tests {
     struct Stage {
         has_ended: bool,
         happened: Vec<Happening>,
+        is_held: Arc<Mutex<bool>>,
     }
 
     impl Playing for Stage {
@@ -112,6 +126,10 @@ mod tests {
             if seat == 1 { vec![Activity::Say] } else { Vec::new() }
         }
 
+        fn hold(&mut self, stands_still: bool) {
+            *self.is_held.lock().unwrap() = stands_still;
+        }
+
         fn end(&mut self) {
             self.has_ended = true;
         }
@@ -119,7 +137,8 @@ mod tests {
 
     #[test]
     fn each_has_a_page_and_it_ends_with_the_last_one() {
-        let stage = Stage { has_ended: false, happened: vec![Happening::GoalMet] };
+        let is_held = Arc::new(Mutex::new(false));
+        let stage = Stage { has_ended: false, happened: vec![Happening::GoalMet], is_held: Arc::clone(&is_held) };
         let mut parts = parts(Box::new(stage), 2);
         let (first, second) = parts.split_at_mut(1);
         let (first, second) = (&mut first[0], &mut second[0]);
@@ -132,6 +151,13 @@ mod tests {
         assert_eq!((first.happened(), second.happened()), (vec![Happening::GoalMet], vec![Happening::GoalMet]));
         assert_eq!(first.happened(), []);
         assert_eq!((first.tried(0), second.tried(1)), (Vec::new(), vec![Activity::Say]));
+        // It stands still as long as it does for either.
+        let held = || *is_held.lock().unwrap();
+        first.hold(true);
+        second.hold(false);
+        assert!(held());
+        first.hold(false);
+        assert!(!held());
         first.end();
         assert!(matches!(first.look(), Look::Gone(_)));
         assert_eq!(token(second.look()), "second");

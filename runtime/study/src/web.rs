@@ -21,11 +21,10 @@ use cohabit_dialog::{
     Framing, Given, HostName, Identity, PagePart, PageTexts, ServerLimits, Site, file_routes, media, token,
 };
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::{
     design::Study,
-    folder::Note,
     keeper::lock,
     markdown::escaped,
     pair::PartnerAbsent,
@@ -70,6 +69,8 @@ pub struct StudyService {
 pub struct Doors {
     /// The experimenter's page.
     pub experimenter: String,
+    /// The observers' page, from which nothing can be changed.
+    pub observer: String,
     /// Where participants sign up.
     pub sign_up: String,
     /// The wizard's page, if a wizard takes part in any session.
@@ -85,6 +86,7 @@ impl StudyService {
         Doors {
             wizard: registry.study.has_wizard().then(|| format!("/wizard/{}", links.wizard)),
             experimenter: format!("/experimenter/{}", links.experimenter),
+            observer: format!("/observer/{}", links.observer),
             sign_up: format!("/sign-up/{}", links.sign_up),
         }
     }
@@ -123,6 +125,8 @@ fn router(service: StudyService) -> Router {
         .route("/experimenter/{token}", get(experimenter))
         .route("/experimenter/{token}/state", get(overview))
         .route("/experimenter/{token}/command", post(command))
+        .route("/observer/{token}", get(observer))
+        .route("/observer/{token}/state", get(observed))
         .fallback(nowhere)
         .with_state(service)
 }
@@ -202,16 +206,37 @@ async fn participant(
     .await
 }
 
-async fn state(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+/// What a page calls itself; nothing, if it does not.
+#[derive(Default, Deserialize)]
+struct Asking {
+    #[serde(default)]
+    page: String,
+}
+
+/// The longest name of a page that counts, in bytes.
+const LONGEST_PAGE: usize = 64;
+
+async fn state(
+    State(service): State<StudyService>,
+    Path(given): Path<String>,
+    Query(asking): Query<Asking>,
+) -> Response {
     with_study(service, move |registry, _| match registry.who(&given) {
-        Some(who) => Json(seen(registry, who)).into_response(),
+        Some(who) => Json(seen(registry, who, &asking)).into_response(),
         None => StatusCode::NOT_FOUND.into_response(),
     })
     .await
 }
 
 /// What a page shows, which was just heard of.
-fn seen(registry: &mut Registry, who: Who) -> Value {
+fn seen(registry: &mut Registry, who: Who, Asking { page }: &Asking) -> Value {
+    if let Who::Participant(place) = who
+        && (1..=LONGEST_PAGE).contains(&page.len())
+        && registry.is_elsewhere(place, page)
+    {
+        let Study { title, contact, .. } = &registry.study;
+        return json!({ "page": "elsewhere", "title": title, "contact": contact });
+    }
     if let Who::Participant(place) = who
         && let Some(participant) = registry.participants.get_mut(&place)
     {
@@ -227,7 +252,12 @@ pub(crate) struct Sent {
     pub event: Event,
 }
 
-async fn event(State(service): State<StudyService>, Path(given): Path<String>, Json(sent): Json<Sent>) -> Response {
+async fn event(
+    State(service): State<StudyService>,
+    Path(given): Path<String>,
+    Query(asking): Query<Asking>,
+    Json(sent): Json<Sent>,
+) -> Response {
     with_study(service, move |registry, _| {
         let Some(who) = registry.who(&given) else { return StatusCode::NOT_FOUND.into_response() };
         let problem = match who {
@@ -236,7 +266,7 @@ async fn event(State(service): State<StudyService>, Path(given): Path<String>, J
             Who::Participant(place) => participants_event(registry, place, &sent).err(),
         };
         let who = registry.who(&given).unwrap_or(Who::Withdrawn);
-        let mut page = seen(registry, who);
+        let mut page = seen(registry, who, &asking);
         let texts = &registry.study.page_texts;
         page["problem"] = problem.as_ref().map_or(Value::Null, |fault| told(fault, texts));
         Json(page).into_response()
@@ -336,6 +366,28 @@ async fn overview(State(service): State<StudyService>, Path(given): Path<String>
     .await
 }
 
+async fn observer(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, _| {
+        if token::admits(&registry.links.observer, Some(&given)) {
+            staff_page(EXPERIMENTER_PAGE)
+        } else {
+            stranger(&registry.study)
+        }
+    })
+    .await
+}
+
+async fn observed(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
+    with_study(service, move |registry, most| {
+        if token::admits(&registry.links.observer, Some(&given)) {
+            Json(registry.observed(most)).into_response()
+        } else {
+            StatusCode::NOT_FOUND.into_response()
+        }
+    })
+    .await
+}
+
 async fn wizard(State(service): State<StudyService>, Path(given): Path<String>) -> Response {
     with_study(service, move |registry, _| {
         if token::admits(&registry.links.wizard, Some(&given)) {
@@ -366,6 +418,10 @@ enum Command {
     Reserve,
     /// A note, about somebody or nobody.
     Note { participant: Option<String>, text: String },
+    /// The mission that somebody plays stands still, or goes on.
+    Pause { participant: String, is_paused: bool },
+    /// Somebody is shown a message.
+    Tell { participant: String, text: String },
     /// Somebody's mission is over.
     EndMission { participant: String },
     /// Somebody takes no part any more; their data stay.
@@ -403,11 +459,10 @@ impl Registry {
                 if let Some(name) = &participant {
                     place(name)?;
                 }
-                let note = Note { at_ms: self.clock.now_ms(), participant, text: short(&text)? };
-                self.folder.note(&note)?;
-                self.notes.push(note);
-                Ok(())
+                self.keep_note(participant, short(&text)?)
             }
+            Command::Pause { participant, is_paused } => self.pause(place(&participant)?, is_paused),
+            Command::Tell { participant, text } => self.tell_participant(place(&participant)?, short(&text)?),
             Command::EndMission { participant } => {
                 for place in self.ended_with(place(&participant)?)? {
                     self.save_played(place);

@@ -34,6 +34,7 @@ pub(crate) struct Written {
     pub missions: Option<Spanned<Words>>,
     pub world: Option<Words>,
     pub settings: WrittenSettings,
+    pub keep_until: Option<Spanned<String>>,
     pub completion_code: Option<Spanned<String>>,
     pub return_url: Option<Spanned<String>>,
     pub information: WrittenSheet,
@@ -42,6 +43,14 @@ pub(crate) struct Written {
     pub block: Vec<Spanned<WrittenBlock>>,
     pub probe: Vec<Spanned<WrittenProbe>>,
     pub wizard: Option<Spanned<WrittenWizard>>,
+    pub code: Vec<Spanned<WrittenCode>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct WrittenCode {
+    pub key: Option<Spanned<String>>,
+    pub text: Option<Spanned<String>>,
 }
 
 #[derive(Default, Deserialize)]
@@ -104,6 +113,7 @@ pub(crate) struct WrittenProbe {
     pub questionnaire: Option<Spanned<String>>,
     pub at: Option<Spanned<String>>,
     pub minutes: Option<Spanned<f64>>,
+    pub pause: bool,
 }
 
 #[derive(Default, Deserialize)]

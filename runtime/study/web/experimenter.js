@@ -3,16 +3,20 @@
 import { byId, button, clock, element } from "./dom.js";
 import { follow, tell } from "./server.js";
 
+/** From this share of late ticks on, a session is said to run badly. */
+const BAD_SHARE = 0.05;
 /** After this, s, somebody's page is said to be silent. */
 const SILENT_S = 10;
 
-let state = { participants: [], notes: [], sign_up: "" };
+let state = { participants: [], notes: [], codes: [], sign_up: "" };
 /** What the rows were built of, so that they are built anew only when they differ and the focus stays. */
 let built = "";
 
 function show(next) {
   if (next.page === "unknown") return;
   state = next;
+  // Who observes has no buttons; the server would not take what they ask for.
+  document.body.dataset.page = state.is_observed ? "observed" : "experimenter";
   byId("title").textContent = state.title;
   document.title = `${state.title} – experimenter`;
   byId("sessions").textContent = `${state.sessions.running} of ${state.sessions.most} sessions`;
@@ -23,6 +27,7 @@ function show(next) {
   showRows();
   showAlarm();
   showNotes();
+  showCodes();
 }
 
 async function order(command) {
@@ -31,7 +36,7 @@ async function order(command) {
 
 function showRows() {
   byId("pair-head").hidden = !state.has_pairs;
-  const form = state.participants.map(({ participant, progress, mission }) => [participant, progress, mission]);
+  const form = state.participants.map(({ participant, progress, mission, is_paused: isPaused }) => [participant, progress, mission, isPaused]);
   if (JSON.stringify(form) !== built) {
     built = JSON.stringify(form);
     const focused = byId("rows").contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
@@ -58,34 +63,54 @@ function fill(row, one) {
     const cell = row.children[index + 1];
     if (cell.textContent !== text) cell.textContent = text;
   });
-  row.classList.toggle("alarm", isSilent(one) || Boolean(one.failed || one.lacks_wizard || one.partner_is_late));
+  row.classList.toggle("alarm", isSilent(one) || Boolean(one.failed || one.lacks_wizard || one.partner_is_late || runsBadly(one)));
 }
 
 const isOut = ({ progress }) => ["not begun", "finished", "excluded", "withdrawn", "parted"].includes(progress);
 const isSilent = (one) => !isOut(one) && (one.away_s === null || one.away_s > SILENT_S);
 
+const runsBadly = ({ health }) => (health?.missed ?? 0) >= BAD_SHARE;
+
+/** How well somebody's session runs, and how fast the robot was last. */
+function healthOf({ health, is_paused: isPaused }) {
+  const ms = (what, value) => (value === null ? "" : `${what} after ${Math.round(value)} ms`);
+  const late = (health?.missed ?? null) === null ? "" : `${Math.round(health.missed * 100)} % of ticks late`;
+  const parts = [isPaused ? "paused" : "", late, ...(health ? [ms("answered", health.answered_ms), ms("moved", health.moved_ms)] : [])];
+  return parts.filter(Boolean).map((part) => ` · ${part}`).join("");
+}
+
 function pageOf(one) {
   if (isOut(one)) return "";
   const page = one.away_s === null ? "not open" : one.away_s > SILENT_S ? `silent for ${clock(one.away_s)}` : "open";
   const waits = one.waited_s === null || one.waited_s === undefined ? "" : ` · waits for a partner: ${clock(one.waited_s)}`;
-  return `${page}${waits}${one.lacks_wizard ? " · no wizard at the seat" : ""}`;
+  return `${page}${waits}${one.lacks_wizard ? " · no wizard at the seat" : ""}${healthOf(one)}`;
+}
+
+function badly() {
+  const all = state.participants.filter(runsBadly).map(({ participant }) => participant);
+  return all.length ? `Sessions run late: ${all.join(", ")}` : "";
 }
 
 /** What is the same is not told anew to who listens to the page. */
 function showAlarm() {
   const lacking = state.participants.filter((one) => one.lacks_wizard).map(({ participant }) => participant);
   const waiting = state.participants.filter((one) => one.partner_is_late).map(({ participant }) => participant);
+  // Who fills in a form may be away as long as they like; a mission that nobody plays is none.
+  const silent = state.participants.filter((one) => one.progress === "mission" && isSilent(one)).map(({ participant }) => participant);
   const failing = state.participants.filter((one) => one.failed).map(({ participant, failed }) => `${participant} (${failed})`);
   const alarms = [
     failing.length ? `Sessions cannot be started, and are tried again and again: ${failing.join(", ")}` : "",
+    silent.length ? `These participants' pages are silent during a mission: ${silent.join(", ")}` : "",
     lacking.length ? `Nobody sits at the wizard's seat: ${lacking.join(", ")}` : "",
     waiting.length ? `These participants have waited long for a partner; please look for the partner: ${waiting.join(", ")}` : "",
+    badly(),
   ];
   const text = alarms.filter(Boolean).join(". ");
   if (byId("alarm").textContent !== text) byId("alarm").textContent = text;
 }
 
 function actionsOf(one) {
+  if (state.is_observed) return [];
   const { participant } = one;
   const labelled = (made, text) => {
     made.setAttribute("aria-label", `${text}: ${participant}`);
@@ -94,9 +119,17 @@ function actionsOf(one) {
   const made = [];
   if (one.link) made.push(labelled(button("quiet", "Copy link", (event) => copy(event.target, one.link)), "Copy link"));
   if (one.progress === "mission") {
+    const text = one.is_paused ? "Resume" : "Pause";
+    made.push(labelled(button("quiet", text, () => order({ pause: { participant, is_paused: !one.is_paused } })), text));
     made.push(labelled(button("quiet", "End mission", () => confirm(state.has_pairs ? `End the mission of ${participant} and their partner?` : `End ${participant}'s mission?`) && order({ end_mission: { participant } })), "End mission"));
   }
   if (!["not begun", "excluded", "withdrawn", "parted"].includes(one.progress)) {
+    made.push(
+      labelled(button("quiet", "Message", () => {
+        const text = prompt(`What do you tell ${participant}? It stands above their page until they close it.`);
+        if (text) order({ tell: { participant, text } });
+      }), "Message"),
+    );
     made.push(
       labelled(button("quiet", "Exclude", () => {
         const reason = prompt(`Why is ${participant} excluded? Their data stay.`);
@@ -150,6 +183,28 @@ function showNotes() {
   list.replaceChildren(...rows.reverse());
 }
 
+/** Buttons of the study's codes, each with its key. */
+function showCodes() {
+  const [list, now] = [byId("codes"), JSON.stringify(state.codes)];
+  if (list.dataset.shown === now) return;
+  list.dataset.shown = now;
+  list.hidden = state.codes.length === 0;
+  const made = state.codes.map((code) => {
+    const one = button("quiet", "", () => noteCode(code));
+    one.append(element("kbd", "", code.key), ` ${code.text}`);
+    one.setAttribute("aria-keyshortcuts", code.key);
+    return one;
+  });
+  list.replaceChildren(...made);
+}
+
+/** Notes a code about whom the next note is to be about. */
+async function noteCode({ text }) {
+  const participant = byId("note-about").value || null;
+  await order({ note: { participant, text } });
+  byId("copied").textContent = byId("problem").textContent ? "" : `Noted about ${participant ?? "the study"}: ${text}`;
+}
+
 byId("note-form").addEventListener("submit", async (event) => {
   event.preventDefault();
   const participant = byId("note-about").value || null;
@@ -158,11 +213,15 @@ byId("note-form").addEventListener("submit", async (event) => {
 });
 
 document.addEventListener("keydown", (event) => {
-  if (event.key !== "/" || event.target.matches("input, select, textarea")) return;
+  if (event.target.matches("input, select, textarea") || event.ctrlKey || event.altKey || event.metaKey) return;
+  const code = event.repeat ? undefined : state.codes.find(({ key }) => key === event.key);
+  if (event.key !== "/" && !code) return;
   event.preventDefault();
-  byId("note-text").focus();
+  if (code) noteCode(code);
+  else byId("note-text").focus();
 });
 
+byId("copy-observer").addEventListener("click", (event) => copy(event.target, state.observer));
 byId("reserve").addEventListener("click", () => order("reserve"));
 byId("copy-sign-up").addEventListener("click", (event) => copy(event.target, state.sign_up));
 

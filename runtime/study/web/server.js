@@ -5,6 +5,9 @@ import { text } from "./texts.js";
 const ASK_EVERY_MS = 1000;
 const GIVE_UP_MS = 8000;
 
+/** What this page calls itself, by which the server tells it from another one that is opened by the same link. */
+const PAGE = `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}`;
+
 const here = location.pathname.replace(/\/$/, "");
 let listen = () => {};
 let onLost = () => {};
@@ -18,7 +21,7 @@ async function ask(path, body, keepalive = false) {
   if (body !== undefined) {
     Object.assign(request, { method: "POST", body: JSON.stringify(body), headers: { "content-type": "application/json" }, keepalive });
   }
-  const answer = await fetch(`${here}/${path}`, request);
+  const answer = await fetch(`${here}/${path}?page=${PAGE}`, request);
   if (answer.status === 404) return { page: "unknown" };
   if (!answer.ok) throw new Error(`status ${answer.status}`);
   return answer.json();

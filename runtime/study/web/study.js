@@ -6,12 +6,14 @@ import { endFollowing, follow, tell, tellQuietly } from "./server.js";
 import { text as words } from "./texts.js";
 
 /** Pages after which nothing follows. */
-const LAST = ["finished", "withdrawn", "excluded", "parted", "unknown"];
+const LAST = ["finished", "withdrawn", "excluded", "parted", "elsewhere", "unknown"];
 
 /** What is shown, so that it is built once; and how it takes in what changes. */
 let shown = "";
 let update = () => {};
 let step = null;
+/** The message of the experimenter's that was closed. */
+let closedMessage = null;
 
 /**
  * What is left of a page when the server no longer knows its link. Links of participants are forgotten only when they
@@ -60,10 +62,24 @@ function showBar(state) {
   byId("bar-time").textContent = isTimed ? words("time_left", { time: clock(state.left_s) }) : "";
   const mayLeave = Boolean(state.step) || hasEnded(state.page);
   byId("leave").hidden = !mayLeave;
+  byId("paused").hidden = !state.is_paused || state.is_over;
+  showMessage(state.message);
   byId("leave-pair").hidden = !state.is_with_partner;
   byId("contact").textContent = state.contact ? words("contact", { contact: state.contact }) : "";
   if (state.page !== "mission" || state.is_over) byId("skip-card").close();
   if (state.page === "withdrawn") byId("leave-card").close();
+}
+
+/** What the experimenter has told this participant last, until they close it. */
+function showMessage(message) {
+  const isOpen = Boolean(message) && message.number !== closedMessage;
+  byId("told").hidden = !isOpen;
+  const text = isOpen ? words("message_from", { text: message.text }) : "";
+  if (byId("told-text").textContent !== text) byId("told-text").textContent = text;
+  byId("told-close").onclick = () => {
+    closedMessage = message?.number ?? null;
+    showMessage(message);
+  };
 }
 
 const heading = (text) => element("h1", "", text);
@@ -271,7 +287,8 @@ const PAGES = {
       if (number === asked) return;
       asked = number;
       const answer = (given) => send({ probe_answered: { probe: number, answer: given } });
-      const about = isOver ? words("probe_about_end") : words("probe_about");
+      const during = probe?.pauses ? words("probe_about_pause") : words("probe_about");
+      const about = isOver ? words("probe_about_end") : during;
       probes.replaceChildren(...(number === null ? [] : [probeForm(probe.item, about, answer)]));
     };
     const beside = list ? element("div", "beside", frame, list.shown) : frame;
@@ -309,6 +326,12 @@ const PAGES = {
     if (html) parts.push(sheet(html));
     return parts;
   },
+
+  elsewhere: () => [
+    heading(words("elsewhere")),
+    element("p", "", words("elsewhere_about")),
+    element("div", "actions", button("chief", words("elsewhere_here"), () => location.reload())),
+  ],
 
   unknown: () => [
     heading(words("unknown")),

@@ -55,7 +55,8 @@ fn look_at_session(browser: &Browser, address: &Value) {
 fn a_person_takes_part_in_a_browser() {
     let scratch = study("study-browser");
     let probe = "[[probe]]\nquestionnaire = \"annoyed.toml\"\nat = \"minutes\"\nminutes = 0.01\n";
-    let _ = scratch.write("study.toml", &format!("{STUDY}\n{probe}"));
+    let code = "[[code]]\nkey = \"t\"\ntext = \"thinks aloud\"\n";
+    let _ = scratch.write("study.toml", &format!("{STUDY}\n{probe}\n{code}"));
     let server = Server::start(&scratch, "0");
     let browser = Browser::start().unwrap();
     let mut tab = browser.open(&format!("http://{}{}", server.host, server.sign_up), 390, 844).unwrap();
@@ -89,6 +90,24 @@ fn a_person_takes_part_in_a_browser() {
     tab.evaluate("document.querySelectorAll('.probe input')[2].click()").unwrap();
     tab.evaluate("document.querySelector('.probe .chief').click()").unwrap();
     tab.wait_until("document.querySelector('.probe') === null").unwrap();
+    // The experimenter has the mission stand still, and tells the participant something.
+    let mut lab = browser.open(&format!("http://{}{}", server.host, server.experimenter), 1280, 800).unwrap();
+    let press = |text: &str| {
+        format!("[...document.querySelectorAll('#rows button')].find((one) => one.textContent === '{text}').click()")
+    };
+    lab.wait_until("document.querySelector('#rows')?.textContent.includes('% of ticks late')").unwrap();
+    lab.evaluate(&press("Pause")).unwrap();
+    tab.wait_until("!document.querySelector('#paused').hidden").unwrap();
+    lab.evaluate("prompt = () => 'Please take your time.'").unwrap();
+    lab.evaluate(&press("Message")).unwrap();
+    tab.wait_until("document.querySelector('#told-text').textContent.includes('Please take your time.')").unwrap();
+    accessibility::check(&mut tab, "a mission that is paused, with a message");
+    tab.evaluate("document.querySelector('#told-close').click()").unwrap();
+    tab.wait_until("document.querySelector('#told').hidden").unwrap();
+    lab.wait_until("document.querySelector('#rows').textContent.includes('Resume')").unwrap();
+    lab.evaluate(&press("Resume")).unwrap();
+    tab.wait_until("document.querySelector('#paused').hidden").unwrap();
+    drop(lab);
     // To skip a mission is one thing, to leave the study another; each is asked about.
     assert_eq!(tab.evaluate("document.querySelector('#leave').textContent").unwrap(), json!("Leave the study"));
     assert_eq!(tab.evaluate("document.querySelector('#skip').textContent").unwrap(), json!("Skip this mission"));
@@ -104,6 +123,15 @@ fn a_person_takes_part_in_a_browser() {
     assert_eq!(tab.evaluate("document.activeElement.type").unwrap(), json!("radio"));
     accessibility::check(&mut tab, "a questionnaire of a study that lacks an answer");
     accessibility::check_with_more_contrast(&mut tab, "a questionnaire of a study that lacks an answer");
+    // Of two windows the newer one goes on, and the other one says so.
+    let address = tab.evaluate("location.href").unwrap();
+    let mut second = browser.open(address.as_str().unwrap(), 390, 844).unwrap();
+    second.wait_until("document.querySelectorAll('.item').length === 2").unwrap();
+    tab.wait_until(&heading("This study is open in another window")).unwrap();
+    accessibility::check(&mut tab, "the page of who has opened another window");
+    drop(second);
+    go_on(&mut tab, "Go on here");
+    tab.wait_until("document.querySelectorAll('.item').length === 2").unwrap();
     // What was filled in is there again after a reload, also what was typed a moment before.
     tab.evaluate("document.querySelectorAll('.places input')[3].click()").unwrap();
     let type_words = "const area = document.querySelector('textarea'); area.value = 'so far'; \
@@ -125,7 +153,29 @@ fn a_person_takes_part_in_a_browser() {
     lab.wait_until("document.querySelector('#notes li')?.textContent.includes('took her time')").unwrap();
     accessibility::check(&mut lab, "the experimenter's page with a note");
     accessibility::check_with_more_contrast(&mut lab, "the experimenter's page with a note");
+    // A key notes a code about whom is chosen; in a field it is a letter.
+    let choose = "document.activeElement.blur(); document.querySelector('#note-about').value = 'P01'";
+    lab.evaluate(choose).unwrap();
+    let press = "document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 't', bubbles: true }))";
+    lab.evaluate(press).unwrap();
+    lab.wait_until("document.querySelector('#notes li')?.textContent.endsWith('P01 thinks aloud')").unwrap();
+    let type_letter =
+        "document.querySelector('#note-text').dispatchEvent(new KeyboardEvent('keydown', { key: 't', bubbles: true }))";
+    let notes = lab.evaluate("document.querySelectorAll('#notes li').length").unwrap();
+    lab.evaluate(type_letter).unwrap();
+    assert_eq!(lab.evaluate("document.querySelectorAll('#notes li').length").unwrap(), notes);
 
+    // Who observes sees the same, and has no buttons.
+    let observer = lab
+        .evaluate("fetch(`${location.pathname}/state`).then((answer) => answer.json()).then((state) => state.observer)")
+        .unwrap();
+    let address = format!("http://{}{}", server.host, observer.as_str().unwrap());
+    let mut observed = browser.open(&address, 1280, 800).unwrap();
+    observed.wait_until("document.querySelector('#notes li')?.textContent.includes('took her time')").unwrap();
+    let buttons = "[...document.querySelectorAll('button, input')].filter((one) => one.checkVisibility()).length";
+    assert_eq!(observed.evaluate(buttons).unwrap(), json!(0));
+    accessibility::check(&mut observed, "the observers' page");
+    drop(observed);
     // Who leaves is asked once more, and then nothing is left.
     tab.evaluate("document.querySelector('#leave').click()").unwrap();
     tab.wait_until("document.querySelector('#leave-card').open").unwrap();

@@ -20,11 +20,13 @@ use cohabit_bus::{
 use cohabit_cdf::Status;
 use cohabit_dialog::{HostName, SeatState};
 use cohabit_record::Log;
-use cohabit_study::{Activity, Ending, Happening, Look, PageAddress, Player, Playing, Wanted, address};
+use cohabit_study::{Activity, Ending, Happening, Health, Look, PageAddress, Player, Playing, Wanted, address};
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::{
     activities::{Activities, Doer, of_inputs, stops},
+    health::HealthWatch,
+    pausing::Pausing,
     ports::{Ports, Taken},
 };
 use crate::{terminal::shown, tls::Tls};
@@ -154,6 +156,8 @@ impl Player for Sessions {
             heard: None,
             happened: Vec::new(),
             activities: wanted.is_tutorial.then(|| Activities::new(wanted.seats as usize)),
+            health: HealthWatch::default(),
+            is_held: false,
             over,
             ends_by: None,
         }))
@@ -212,6 +216,10 @@ struct PlayedSession {
     happened: Vec<Happening>,
     /// What participants do, if it is a tutorial.
     activities: Option<Activities>,
+    /// How well it runs.
+    health: HealthWatch,
+    /// Whether its world is to stand still.
+    is_held: bool,
     /// How its mission had ended before it began, if it goes on from such a point.
     over: Option<Ending>,
     /// When it is killed, if it was asked to end.
@@ -222,8 +230,20 @@ struct PlayedSession {
 struct Heard {
     events: Inbox,
     dialog: Inbox,
-    /// What bodies are commanded, which is asked for in tutorials alone.
-    ticks: Option<Inbox>,
+    /// Whether ticks begin in time; and what bodies are commanded, which counts in tutorials alone.
+    ticks: Inbox,
+    pausing: Pausing,
+}
+
+impl Heard {
+    fn new(bus: &Shm) -> Result<Self, BusError> {
+        Ok(Self {
+            events: Inbox::new(bus, Topic::Events)?,
+            dialog: Inbox::new(bus, Topic::Dialog)?,
+            ticks: Inbox::new(bus, Topic::Ticks)?,
+            pausing: Pausing::new(bus)?,
+        })
+    }
 }
 
 impl PlayedSession {
@@ -259,23 +279,29 @@ impl PlayedSession {
     fn ending(&mut self) -> Result<Option<Ending>, BusError> {
         if self.heard.is_none() {
             let Ok(session) = Session::new(&self.session) else { return Ok(None) };
-            let bus = Shm::join(&session)?;
-            let ticks = self.activities.as_ref().map(|_| Inbox::new(&bus, Topic::Ticks)).transpose()?;
-            let (events, dialog) = (Inbox::new(&bus, Topic::Events)?, Inbox::new(&bus, Topic::Dialog)?);
-            self.heard = Some(Heard { events, dialog, ticks });
+            self.heard = Some(Heard::new(&Shm::join(&session)?)?);
         }
-        let Some(Heard { events, dialog, ticks }) = &mut self.heard else { return Ok(None) };
-        if let (Some(activities), Some(ticks)) = (&mut self.activities, ticks) {
-            let commanded = |view: TickView<'_>| of_inputs(view.inputs);
-            while let Some((_, told)) = ticks.next(|sample| TickView::new(sample.payload()).map(commanded))? {
-                told.into_iter().for_each(|(doer, activity)| activities.note(doer, activity));
+        let Some(Heard { events, dialog, ticks, pausing }) = &mut self.heard else { return Ok(None) };
+        pausing.keep(self.is_held)?;
+        let is_tutorial = self.activities.is_some();
+        let ticked = |view: TickView<'_>| {
+            let commanded = if is_tutorial { of_inputs(view.inputs) } else { Vec::new() };
+            (view.header.wall_nanos, view.header.late_nanos, commanded)
+        };
+        while let Some((_, (wall_nanos, late_nanos, commanded))) =
+            ticks.next(|sample| TickView::new(sample.payload()).map(ticked))?
+        {
+            self.health.note_tick(wall_nanos, late_nanos);
+            if let Some(activities) = &mut self.activities {
+                commanded.into_iter().for_each(|(doer, activity)| activities.note(doer, activity));
             }
         }
         let told = |view: DialogView<'_>| {
             let header = view.header;
-            (header.kind(), Doer::at_page(header.person), stops(view.steps), SeatState::of(header.text.as_str()))
+            let seat = SeatState::of(header.text.as_str());
+            (header.kind(), Doer::at_page(header.person), stops(view.steps), seat, header.stamps)
         };
-        while let Some((_, (kind, doer, stops, seat))) =
+        while let Some((_, (kind, doer, stops, seat, stamps))) =
             dialog.next(|sample| DialogView::new(sample.payload()).map(told))?
         {
             if let (Some(activities), Some(kind)) = (&mut self.activities, kind) {
@@ -284,6 +310,7 @@ impl PlayedSession {
             match kind {
                 Some(DialogKind::Question) => self.happened.push(Happening::QuestionAsked),
                 Some(DialogKind::Seat) => self.wizards_seat = seat.unwrap_or_default(),
+                Some(DialogKind::Latency) => self.health.note_turn(stamps),
                 _ => {}
             }
         }
@@ -389,6 +416,14 @@ impl Playing for PlayedSession {
     fn lacks_wizard(&self) -> bool {
         let has_seat = self.page.as_ref().is_some_and(|page| page.wizard.is_some());
         has_seat && self.over.is_none() && self.wizards_seat == SeatState::Empty
+    }
+
+    fn hold(&mut self, stands_still: bool) {
+        self.is_held = stands_still;
+    }
+
+    fn health(&self) -> Health {
+        self.health.health()
     }
 
     fn end(&mut self) {

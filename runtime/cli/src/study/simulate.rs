@@ -7,7 +7,7 @@ use cohabit_study::{DryRun, Folder, People, SimulateError, Simulated, simulate};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{
-    read, refused,
+    Export, read, refused,
     speakers::{Speakers, unheeded},
     world_of,
 };
@@ -35,6 +35,9 @@ pub struct Simulate {
     /// How many missions are played at a time; one for each core, if absent
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..))]
     workers: Option<u16>,
+    /// Write what comes of it into this folder, too: tables, a summary, plots and the methods sheet, as `cohabit study export --summary`
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
 }
 
 impl Simulate {
@@ -66,7 +69,10 @@ impl Simulate {
         if has_wizard {
             println!("note: where a wizard takes part, each proposal of the robot counts as accepted");
         }
-        Ok(())
+        match &self.out {
+            Some(out) => Export { folder: self.folder.clone(), out: out.clone(), practice: false, summary: true }.run(),
+            None => Ok(()),
+        }
     }
 
     fn tell(&self, run: &DryRun, simulated: &Simulated, passed_over: &[String]) {
@@ -100,7 +106,6 @@ mod tests {
     use std::{fs, path::Path};
 
     use super::*;
-    use crate::study::{Export, report::Report};
 
     const STUDY: &str = r#"
 title = "A short study"
@@ -129,15 +134,14 @@ block = [
         let [data, out] = ["", "-tables"].map(|part| folder.join(format!("{name}{part}")));
         let run = Simulate {
             file: folder.join("study.toml"),
-            folder: data.clone(),
+            folder: data,
             participants: Some(3),
             seed: 7,
             people: Some(folder.join("people.toml")),
             workers: Some(2),
+            out: Some(out.clone()),
         };
         run.run().expect("a dry run");
-        Export { folder: data.clone(), out: out.clone(), practice: false }.run().expect("tables");
-        Report { folder: data, out: Some(out.join("methods.md")) }.run().expect("a methods sheet");
         let entries = fs::read_dir(out).expect("tables").map(|entry| entry.expect("a table").path());
         let read = |path: PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -165,6 +169,9 @@ block = [
         assert_eq!(tables, dry_run(&folder, "two"));
         let table = |name: &str| tables.iter().find(|(own, _)| own == name).map(|(_, text)| text.as_str()).expect(name);
         assert!(table("methods.md").starts_with("> **Synthetic data.**"));
+        // By one command: what the conditions did, as text and as plots.
+        assert!(table("summary.txt").contains("ask"), "{}", table("summary.txt"));
+        assert!(tables.iter().any(|(name, text)| name.starts_with("plot_") && text.contains("<svg")));
         for name in [
             "sessions.csv",
             "turns.csv",

@@ -29,7 +29,7 @@ impl Checking<'_, '_> {
                 "name a questionnaire of one item, which takes a moment to answer",
             );
         }
-        Some(Probe { questionnaire: questionnaire.name, at: moment? })
+        Some(Probe { questionnaire: questionnaire.name, at: moment?, pauses: probe.pause })
     }
 
     fn moment(&mut self, probe: &WrittenProbe, at: &Pointer) -> Option<Moment> {

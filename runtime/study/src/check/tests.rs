@@ -219,6 +219,13 @@ fn files_that_settings_name_are_kept_with_the_study() {
 }
 
 #[test]
+fn the_day_until_which_data_are_kept_is_read() {
+    let study = check("keep", &STUDY.replacen("contact", "keep_until = \"2031-12-31\"\ncontact", 1)).unwrap();
+    assert_eq!(study.keep_until.as_deref(), Some("2031-12-31"));
+    assert_eq!(check("keep", STUDY).unwrap().keep_until, None);
+}
+
+#[test]
 fn boxes_practice_and_what_pages_show_are_read() {
     let study = check("larger", &larger()).unwrap();
     let boxes: Vec<_> = study.consents.iter().map(|one| (one.text.as_str(), one.is_required, one.audio)).collect();
@@ -317,7 +324,18 @@ fn what_is_wrong_is_said_with_its_place_and_a_remedy() {
             "file = \"none.md\"\nversion = \"1\"",
             ":10:8: /information/file: `none.md`: No such",
         ),
+        (
+            "contact",
+            "keep_until = \"31.12.2031\"\ncontact",
+            "/keep_until: `31.12.2031` is no day; write year, month and day",
+        ),
+        ("contact", "keep_until = \"2031-13-01\"\ncontact", "/keep_until: `2031-13-01` is no day"),
         ("contact", "return_url = \"x\"\ncontact", "`x` is no address of a page"),
+        (
+            "contact",
+            "return_url = \"https://{at}.org\"\ncontact",
+            "/return_url: parameters can stand behind a ? alone; such as",
+        ),
         ("contact", "completion_code = \"x\"\nreturn_url = \"http://x\"\ncontact", "keep one of them"),
         ("contact", "language = \"tlh\"\ncontact", "/language: there is no page in the language `tlh`; choose en, de"),
         ("contact", "page_texts = \"none.toml\"\ncontact", "/page_texts: `none.toml`: No such"),
@@ -607,6 +625,23 @@ fn a_wizard_takes_part_as_the_file_says() {
     assert!(note.contains("2000 ms after the words with a wizard and 0 ms without"), "{note}");
     let alike = delayed.replacen("ask = \"never\"", "response-delay-ms = 2000", 1);
     assert_eq!(check("alike", &alike).unwrap().wizard_note(), None);
+}
+
+#[test]
+fn codes_have_a_key_each() {
+    let code = |key: &str, text: &str| format!("\n[[code]]\nkey = \"{key}\"\ntext = \"{text}\"\n");
+    let study = check("codes", &format!("{STUDY}{}{}", code("t", "thinks aloud"), code("2", " repairs "))).unwrap();
+    let codes: Vec<_> = study.codes.iter().map(|code| (code.key, code.text.as_str())).collect();
+    assert_eq!(codes, [('t', "thinks aloud"), ('2', "repairs")]);
+    for (codes, part) in [
+        (code("ab", "x"), "/code/0/key: `ab` is no key for a code; write a small letter"),
+        (code("/", "x"), "/code/0/key: `/` is no key for a code"),
+        (code("t", "x").repeat(2), "/code/1/key: two codes have the key `t`; give one of them another key"),
+        (code("t", " "), "`text` cannot be this string"),
+    ] {
+        let said = check("codes", &format!("{STUDY}{codes}")).unwrap_err();
+        assert!(said.contains(part) && said.lines().count() == 1, "no `{part}` in {said}");
+    }
 }
 
 #[test]

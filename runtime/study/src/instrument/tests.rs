@@ -33,16 +33,6 @@ fn scores_are_those_worked_out_by_hand() {
     let pairs = [1, 1, 1, 1, 1, 2, 2, 2, 2, 1, 2, 1, 2, 1, 1];
     let weighted = [&[70, 10, 50, 20, 65, 25][..], &pairs].concat();
     check("tlx_weighted", &values(&weighted), &[("tlx_raw", 40.0), ("tlx_weighted", 55.0)]);
-    // Five of 1, 2, 3, 4, 5: 3; six of 2, 3, 4, 5, 4, 3: 21 / 6; five of 4: 4; 5, 5, 5, 4, 4: 4.6; 1, 2, 3: 2.
-    let godspeed = [1, 2, 3, 4, 5, 2, 3, 4, 5, 4, 3, 4, 4, 4, 4, 4, 5, 5, 5, 4, 4, 1, 2, 3];
-    let expected = [
-        ("godspeed_anthropomorphism", 3.0),
-        ("godspeed_animacy", 3.5),
-        ("godspeed_likeability", 4.0),
-        ("godspeed_perceived_intelligence", 4.6),
-        ("godspeed_perceived_safety", 2.0),
-    ];
-    check("godspeed", &values(&godspeed), &expected);
     // Warmth first, then competence, then discomfort, in turn: 6 of 5; 6, 7, 8, 9, 6, 6: 42 / 6; 1, 2, 1, 2, 1, 2: 9 / 6.
     let rosas = [5, 6, 1, 5, 7, 2, 5, 8, 1, 5, 9, 2, 5, 6, 1, 5, 6, 2];
     let expected = [("rosas_warmth", 5.0), ("rosas_competence", 7.0), ("rosas_discomfort", 1.5)];
@@ -68,9 +58,11 @@ fn scores_are_those_worked_out_by_hand() {
 
 #[test]
 fn all_that_ship_say_where_they_are_from() {
-    for name in ["sus", "tlx", "tlx_weighted", "godspeed", "rosas", "trust", "ueq_s", "pssuq"] {
+    for name in ["sus", "tlx", "tlx_weighted", "rosas", "trust", "ueq_s", "pssuq"] {
         let (asked, Instrument { citation, licence, scores, .. }) = Instrument::find(name).unwrap();
-        assert!(citation.is_some() && licence.is_some() && !scores.is_empty(), "{name}");
+        assert!(citation.is_some() && !scores.is_empty(), "{name}");
+        // Who has the program may sell it, and what is in it with it.
+        assert!(licence.is_some_and(|licence| !licence.to_lowercase().contains("noncommercial")), "{name}");
         let scored: Vec<usize> =
             scores.iter().flat_map(|score| score.items.iter().chain(&score.pairs)).copied().collect();
         assert!((1..=asked.items.len()).all(|number| scored.contains(&number)), "{name}: an item counts for nothing");

@@ -34,7 +34,12 @@ block = [{ kind = "missions", minutes = 5, settings = { record-audio = true } },
 
 /// Sessions that are what a test says.
 #[derive(Clone, Default)]
-struct Stage(Arc<Mutex<Vec<(Wanted, Look)>>>, Arc<Mutex<Vec<Happening>>>, Arc<Mutex<Vec<Activity>>>);
+struct Stage(
+    Arc<Mutex<Vec<(Wanted, Look)>>>,
+    Arc<Mutex<Vec<Happening>>>,
+    Arc<Mutex<Vec<Activity>>>,
+    Arc<Mutex<Option<bool>>>,
+);
 
 struct Act {
     stage: Stage,
@@ -87,6 +92,10 @@ impl Playing for Act {
     fn lacks_wizard(&self) -> bool {
         let look = &self.stage.0.lock().unwrap()[self.number].1;
         matches!(look, Look::Open(page) if page.wizard.is_some())
+    }
+
+    fn hold(&mut self, stands_still: bool) {
+        *self.stage.3.lock().unwrap() = Some(stands_still);
     }
 
     fn end(&mut self) {
@@ -383,6 +392,58 @@ fn what_is_asked_at_the_goal_that_completes_a_mission_is_answered_before_the_stu
 }
 
 #[test]
+fn a_mission_stands_still_for_the_experimenter_and_for_a_question_that_wants_it_so() {
+    let mut case = Case::new("still");
+    let probe = "\n[[probe]]\nquestionnaire = 'trust.toml'\nat = 'goal_met'\npause = true\n";
+    let _ = case.scratch.write("trust.toml", "title = 'T'\n[[item]]\nask = 'Trust?'\nscale = { least = 1, most = 5 }");
+    let _ = case.scratch.write("study.toml", &format!("{STUDY}{probe}"));
+    case.start_again();
+    let place = case.enrol();
+    assert!(case.registry().pause(place, true).is_err(), "no mission is played");
+    case.apply(place, &Event::GoesOn);
+    (0..2).for_each(|_| case.look_after(1));
+    let held = |case: &mut Case| {
+        case.look_after(1);
+        *case.stage.3.lock().unwrap()
+    };
+    let unsaved_s = |case: &mut Case| {
+        let live = case.registry().participants.get_mut(&place).unwrap().live.as_mut().unwrap();
+        live.looked = Instant::now().checked_sub(Duration::from_millis(50)).unwrap();
+        let before = live.unsaved_s;
+        case.look_after(1);
+        case.registry().participants[&place].live.as_ref().unwrap().unsaved_s - before
+    };
+    assert_eq!(held(&mut case), Some(false));
+    assert!(unsaved_s(&mut case) > 0.0);
+    case.registry().pause(place, true).unwrap();
+    assert_eq!((held(&mut case), unsaved_s(&mut case)), (Some(true), 0.0));
+    assert_eq!(case.registry().page(Who::Participant(place))["is_paused"], true);
+    assert_eq!(case.registry().overview(1)["participants"][0]["is_paused"], true);
+    case.registry().pause(place, false).unwrap();
+    assert_eq!(held(&mut case), Some(false));
+    case.stage.1.lock().unwrap().push(Happening::GoalMet);
+    case.look_after(1);
+    assert_eq!(held(&mut case), Some(true));
+    let page = case.registry().page(Who::Participant(place));
+    assert_eq!((&page["probe"]["pauses"], &page["is_paused"]), (&true.into(), &false.into()));
+    let event = Event::ProbeAnswered { probe: 0, answer: Some(Given::Value(4)) };
+    participants_event(case.registry(), place, &Sent { step: Some(1), event }).unwrap();
+    assert_eq!(held(&mut case), Some(false));
+    // What was paused was one mission, and what was ordered stands in the notes.
+    case.registry().pause(place, true).unwrap();
+    case.apply(place, &Event::Over { ending: Ending::Stopped });
+    case.apply(place, &Event::GoesOn);
+    (0..2).for_each(|_| case.look_after(1));
+    assert_eq!(held(&mut case), Some(false));
+    case.registry().tell_participant(place, "Please go on.".to_owned()).unwrap();
+    let message = case.registry().page(Who::Participant(place))["message"].clone();
+    assert_eq!(message, serde_json::json!({ "number": 1, "text": "Please go on." }));
+    let notes: Vec<_> = case.registry().notes.iter().map(|note| note.text.clone()).collect();
+    assert_eq!((notes.len(), notes[3].as_str()), (4, "Message: Please go on."));
+    assert!(case.registry().tell_participant(9, "You?".to_owned()).is_err(), "nobody is called so");
+}
+
+#[test]
 fn a_tutorial_waits_until_all_was_tried_and_goes_on_where_it_was() {
     let mut case = Case::new("tutorial");
     let exercise = |what: &str| format!("{{ what = '{what}', text = 'Try to {what}.' }}");
@@ -510,6 +571,24 @@ fn sessions_that_cannot_be_started_for_a_while_are_told_and_take_no_mission_alon
 }
 
 #[test]
+fn of_two_pages_of_one_link_the_newer_one_goes_on() {
+    let mut case = Case::new("windows");
+    let (place, other) = (case.enrol(), case.enrol());
+    let elsewhere = |case: &mut Case, page: &str| case.registry().is_elsewhere(place, page);
+    assert!(!elsewhere(&mut case, "first") && !elsewhere(&mut case, "first"));
+    assert!(!elsewhere(&mut case, "second"), "the newer one");
+    assert!(elsewhere(&mut case, "first") && elsewhere(&mut case, "first") && !elsewhere(&mut case, "second"));
+    assert!(!case.registry().is_elsewhere(other, "first"), "of another participant");
+    // Who is asked by a server that was started again is the one that is open.
+    case.start_again();
+    assert!(!elsewhere(&mut case, "second"));
+    for number in 0..100 {
+        assert!(!elsewhere(&mut case, &format!("reload {number}")));
+    }
+    assert!(case.registry().participants[&place].pages.len() <= 50);
+}
+
+#[test]
 fn time_is_up_when_it_was_played() {
     let mut case = Case::new("time");
     let place = case.enrol();
@@ -544,6 +623,32 @@ fn who_withdraws_while_playing_leaves_nothing_once_the_session_has_ended() {
     case.start_again();
     assert_eq!(case.registry().who(&token), None);
     assert_eq!(case.phase(other), Phase::At(0, Doing::Queued { again: true }));
+}
+
+#[test]
+fn who_came_by_a_link_with_a_code_is_led_back_by_it_and_takes_it_along() {
+    let back = "return_url = \"https://x.org/?credit={survey_code}\"\ntitle";
+    let mut case = Case::of("way-back", &STUDY.replacen("title", back, 1));
+    let registry = case.registry();
+    let token = registry.sign_up().unwrap();
+    let Some(Who::Newcomer(index)) = registry.who(&token) else { panic!("a newcomer") };
+    let parameters = [("survey_code", "7 8"), ("name", "Ada")].map(|(name, value)| (name.to_owned(), value.to_owned()));
+    registry.tell(index, &BTreeMap::from(parameters));
+    let links = case.scratch.path("data/private/links.json");
+    let has_code = || fs::read_to_string(&links).unwrap().contains("7 8");
+    assert!(!has_code(), "nobody has agreed");
+    case.registry().enrol(index, "2", &[0, 1]).unwrap();
+    let Some(Who::Participant(place)) = case.registry().who(&token) else { panic!("a participant") };
+    case.start_again();
+    let completion = case.registry().completion(place);
+    assert_eq!(completion, Some(crate::design::Completion::Return("https://x.org/?credit=7%208".to_owned())));
+    assert!(has_code() && !fs::read_to_string(&links).unwrap().contains("Ada"));
+    let journal = fs::read_to_string(case.scratch.path("data/journals/P01.jsonl")).unwrap();
+    assert!(!journal.contains("7 8") && !journal.contains("survey_code"), "{journal}");
+    case.apply(place, &Event::Withdrew);
+    case.look_after(1);
+    case.registry().reserve(None).unwrap();
+    assert!(!has_code(), "nothing of theirs is left");
 }
 
 #[test]

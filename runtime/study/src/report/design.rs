@@ -179,14 +179,18 @@ pub(super) fn procedure(known: &Known<'_>) -> String {
     }));
     steps.extend(study.debriefing.as_ref().map(|_| "They were debriefed.".to_owned()));
     let probe = |probe: &crate::probe::Probe| format!("`{}` ({})", probe.questionnaire, probe.at.name());
-    let probes: Vec<String> = study.probes.iter().map(probe).collect();
+    let probes =
+        |pauses: bool| -> Vec<String> { study.probes.iter().filter(|one| one.pauses == pauses).map(probe).collect() };
     let numbered = steps.iter().enumerate().map(|(number, step)| format!("{}. {step}", number + 1));
     let mut text = numbered.collect::<Vec<_>>().join("\n");
     if let Some(pairs) = pairs::procedure(known) {
         text += &format!("\n\n{pairs}");
     }
-    if !probes.is_empty() {
-        text += &format!("\n\nDuring each mission, which went on meanwhile, they were asked {}.", listed(&probes));
+    for (pauses, how) in [(false, "went on"), (true, "stood still")] {
+        let asked = probes(pauses);
+        if !asked.is_empty() {
+            text += &format!("\n\nDuring each mission, which {how} meanwhile, they were asked {}.", listed(&asked));
+        }
     }
     text
 }

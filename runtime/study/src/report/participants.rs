@@ -30,6 +30,10 @@ pub(super) fn section(known: &Known<'_>) -> String {
     if let Some((first, last)) = times(all) {
         text += &format!(" The first consented on {first}, and the last step ended on {last}.");
     }
+    text += &match &known.records.study.keep_until {
+        Some(day) => format!(" Their data are kept until {day}."),
+        None => " Until when their data are kept: **missing, add `keep_until` to the study's file**.".to_owned(),
+    };
     text + " Age, gender, experience, recruitment and pay are not known to the program: **missing, add them** (they may be \
             answers to a questionnaire; see `answers.csv`)."
 }
@@ -47,7 +51,8 @@ fn times(all: &[Progress]) -> Option<(String, String)> {
 }
 
 /// The day of a time, ms since 1970, in UTC, such as `2026-11-26` (the algorithm is Howard Hinnant's `civil_from_days`).
-pub(super) fn day(at_ms: u64) -> String {
+#[must_use]
+pub fn day(at_ms: u64) -> String {
     const DAY_MS: u64 = 86_400_000;
     let days = at_ms / DAY_MS + 719_468;
     let (era, of_era) = (days / 146_097, days % 146_097);

@@ -170,6 +170,33 @@ fn a_sheet_says_why_somebody_was_excluded() {
 }
 
 #[test]
+fn a_sheet_says_whether_missions_stood_still_for_a_question() {
+    let mut records = records(false);
+    let probe = |questionnaire: &str, pauses: bool| crate::probe::Probe {
+        questionnaire: questionnaire.to_owned(),
+        at: crate::probe::Moment::Played(60.0),
+        pauses,
+    };
+    records.study.probes = vec![probe("mood", false), probe("trust", true)];
+    let text = report(&records, &Apparatus::default(), &[]);
+    for part in
+        ["which went on meanwhile, they were asked `mood`", "which stood still meanwhile, they were asked `trust`"]
+    {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+}
+
+#[test]
+fn a_sheet_says_until_when_data_are_kept() {
+    let mut records = records(false);
+    let text = report(&records, &Apparatus::default(), &[]);
+    assert!(text.contains("add `keep_until` to the study's file"), "{text}");
+    records.study.keep_until = Some("2031-12-31".to_owned());
+    let text = report(&records, &Apparatus::default(), &[]);
+    assert!(text.contains("Their data are kept until 2031-12-31."), "{text}");
+}
+
+#[test]
 fn a_sheet_of_a_dry_run_says_so_first() {
     let text = report(&records(true), &Apparatus::default(), &[turns()]);
     assert!(text.starts_with("> **Synthetic data.**"), "{text}");
