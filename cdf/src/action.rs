@@ -73,6 +73,52 @@ pub enum Action {
         /// Signed speed of the head's pitch, rad/s; positive is up.
         pitch_rad_s: f32,
     },
+    /// Put what is held onto or into a receptacle, at the free place that is nearest to something. Where none is near, it is put
+    /// all the same, and the outcome says so. The last of all, so that the others keep their numbers in snapshots and digests.
+    PlaceBeside {
+        /// Which receptacle.
+        receptacle: ObjectId,
+        /// Beside what.
+        beside: ObjectId,
+    },
+}
+
+impl Action {
+    /// Putting what is held onto or into a receptacle, beside something if that was said.
+    #[must_use]
+    pub const fn place(receptacle: ObjectId, beside: Option<ObjectId>) -> Self {
+        match beside {
+            Some(beside) => Self::PlaceBeside { receptacle, beside },
+            None => Self::Place { receptacle },
+        }
+    }
+
+    /// What it puts the thing in the hand onto or into, if it does.
+    #[must_use]
+    pub const fn receptacle(&self) -> Option<ObjectId> {
+        match *self {
+            Self::Place { receptacle } | Self::PlaceBeside { receptacle, .. } => Some(receptacle),
+            _ => None,
+        }
+    }
+
+    /// What it puts the thing in the hand beside, if that was said.
+    #[must_use]
+    pub const fn beside(&self) -> Option<ObjectId> {
+        match *self {
+            Self::PlaceBeside { beside, .. } => Some(beside),
+            _ => None,
+        }
+    }
+
+    /// The same, beside nothing in particular.
+    #[must_use]
+    pub const fn beside_nothing(self) -> Self {
+        match self {
+            Self::PlaceBeside { receptacle, .. } => Self::Place { receptacle },
+            other => other,
+        }
+    }
 }
 
 /// Where a body can be told to walk.
@@ -211,5 +257,23 @@ impl Status {
     #[must_use]
     pub const fn is_failure(self) -> bool {
         !self.is_success() && !matches!(self, Self::Interrupted)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_beside_nothing_is_written_as_before() {
+        let put = Action::place(ObjectId(4), None);
+        let written = r#"{"Place":{"receptacle":4}}"#;
+        assert_eq!(serde_json::to_string(&put).unwrap(), written);
+        assert_eq!(serde_json::from_str::<Action>(written).unwrap(), put);
+        let beside = Action::place(ObjectId(4), Some(ObjectId(2)));
+        assert_eq!(serde_json::from_str::<Action>(&serde_json::to_string(&beside).unwrap()).unwrap(), beside);
+        assert_eq!((beside.receptacle(), beside.beside()), (put.receptacle(), Some(ObjectId(2))));
+        assert_eq!(beside.beside_nothing(), put);
     }
 }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 pub use names::ClassNames;
 pub(crate) use pack::Layer;
-pub use pack::PackId;
+pub use pack::{PackId, Speech};
 use table::{ActionTable, TableError};
 
 use crate::{
@@ -119,6 +119,9 @@ pub struct ObjectClass {
     /// Where the robot must aim and reach, m in the object's frame; the middle of the object, if absent.
     #[serde(default)]
     pub handle_m: Option<[f32; 3]>,
+    /// The states that one is built in, before a mission changes them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub as_built: Vec<StateFlag>,
     /// Whether it hangs on a wall (back at `-x`), stands on the floor, or lies on surfaces.
     #[serde(default)]
     pub stands: Stands,
@@ -134,13 +137,7 @@ impl ObjectClass {
     /// The states that one is built in, before a mission changes them.
     #[must_use]
     pub fn states_as_built(&self) -> StateFlags {
-        let flags = StateFlags::default();
-        match self.id.as_str() {
-            // The warehouse's cabinets stand open: missions put things in them that nobody is told to open.
-            "Door_01" | "KitchenCabinet_02" => flags.with(StateFlag::Opened),
-            "LightSwitch_01" | "FuseBox_01_Lever" | "FuseBox_01" | "FuseBox_02" => flags.with(StateFlag::Toggled),
-            _ => flags,
-        }
+        self.as_built.iter().fold(StateFlags::default(), |flags, flag| flags.with(*flag))
     }
 
     /// What one holds as it is built.

@@ -30,7 +30,7 @@ pub use with_program::{builtin_files, names as builtin_names};
 
 use crate::{
     builtin,
-    catalog::{Catalog, Layer, PackId},
+    catalog::{Catalog, Layer, PackId, Speech},
     layout::Layout,
     room::{RoomEntry, Rooms},
 };
@@ -58,6 +58,8 @@ struct Head {
     version: String,
     licence: String,
     description: String,
+    #[serde(default)]
+    speech: Option<Speech>,
     #[serde(default, rename = "room")]
     rooms: Vec<RoomEntry>,
 }
@@ -85,6 +87,7 @@ pub struct WorldPack {
     id: PackId,
     licence: String,
     description: String,
+    speech: Option<Speech>,
     rooms: Vec<RoomEntry>,
     objects: Texts,
     models: Texts,
@@ -138,12 +141,13 @@ impl WorldPack {
                 Head::default()
             }
         };
-        let Head { name, version, licence, description, rooms } = head;
+        let Head { name, version, licence, description, speech, rooms } = head;
         let mut pack = Self {
             root: root.to_owned(),
             id: PackId { name, version, digest: digest(&files) },
             licence,
             description,
+            speech,
             rooms,
             objects: Vec::new(),
             models: Vec::new(),
@@ -275,6 +279,7 @@ impl WorldData {
         let layer = Layer {
             packs: packs.iter().map(|pack| pack.id.clone()).collect(),
             plans: packs.iter().flat_map(|pack| pack.layouts.iter().cloned()).collect(),
+            speech: packs.iter().rev().find_map(|pack| pack.speech).unwrap_or_default(),
         };
         let (catalog, of_catalog) = Catalog::gather(&objects, &models);
         errors.extend(of_catalog.into_iter().map(PackError::from));

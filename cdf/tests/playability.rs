@@ -91,6 +91,7 @@ fn some_states_are_of_some_things_alone() {
         ("Flower_Pot_1", "isCreased", false, false),
         ("Shirt_1", "isFolded", false, true),
         ("Kettle_1", "isFolded", false, false),
+        ("Curtains_1", "isOpen", false, true),
     ] {
         let states = if start { json!([{ state: "true" }]) } else { json!([]) };
         let mission = json!({

@@ -14,6 +14,9 @@ pub struct PyAction {
     pub unknown: Option<String>,
 }
 
+/// What no object of any world has for its number.
+const NOBODY: ObjectId = ObjectId(u32::MAX);
+
 /// The object of an action: its number, or a sentence that says why there is none.
 #[derive(FromPyObject)]
 pub enum ObjectArgument {
@@ -30,9 +33,17 @@ impl PyAction {
     }
 
     fn on(object: ObjectArgument, action: impl FnOnce(ObjectId) -> Action) -> Self {
-        match object {
-            ObjectArgument::Number(number) => Self::new(action(ObjectId(number))),
-            ObjectArgument::Unknown(why) => Self { action: action(ObjectId(u32::MAX)), unknown: Some(why) },
+        let (object, unknown) = object.found();
+        Self { action: action(object), unknown }
+    }
+}
+
+impl ObjectArgument {
+    /// The object, and why there is none, if there is none.
+    fn found(self) -> (ObjectId, Option<String>) {
+        match self {
+            Self::Number(number) => (ObjectId(number), None),
+            Self::Unknown(why) => (NOBODY, Some(why)),
         }
     }
 }
@@ -96,8 +107,11 @@ impl PyAction {
     }
 
     #[staticmethod]
-    fn place(receptacle: ObjectArgument) -> Self {
-        Self::on(receptacle, |receptacle| Action::Place { receptacle })
+    #[pyo3(signature = (receptacle, beside=None))]
+    fn place(receptacle: ObjectArgument, beside: Option<ObjectArgument>) -> Self {
+        let (receptacle, unknown) = receptacle.found();
+        let (beside, beside_unknown) = beside.map(ObjectArgument::found).unzip();
+        Self { action: Action::place(receptacle, beside), unknown: unknown.or(beside_unknown.flatten()) }
     }
 
     #[staticmethod]

@@ -131,6 +131,7 @@ def test_an_unknown_name_is_refused_as_data() -> None:
         (PickUp("bowel"), "no object `bowel` in this world: did you mean `Bowl`"),
         (GoTo("Labb1"), "no object or room `Labb1` in this world: did you mean `Lab1`"),
         (Place("Bowl_01_7"), "`Bowl_01_1`"),
+        (Place("Bowl_01_1", "Bowl_01_7"), "`Bowl_01_1`"),
         (Interact("open", "zzyzx"), "there is no object `zzyzx` in this world"),
     ]:
         before = env.state.tick

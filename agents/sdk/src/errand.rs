@@ -99,7 +99,11 @@ impl Errand {
             Action::GoTo { target: GoToTarget::Object(object) } if success => self.stands_at = Some(object),
             Action::GoTo { .. } | Action::Move { .. } | Action::Rotate { .. } => self.leave_place(),
             Action::PickUp { object } if success => self.holds = Some(object),
-            Action::Place { .. } | Action::Interact { verb: Verb::Throw, .. } if success => self.holds = None,
+            Action::Place { .. } | Action::PlaceBeside { .. } | Action::Interact { verb: Verb::Throw, .. }
+                if success =>
+            {
+                self.holds = None;
+            }
             _ => {}
         }
     }
@@ -109,7 +113,7 @@ impl Errand {
 const fn acts_on(action: Action) -> Option<ObjectId> {
     match action {
         Action::PickUp { object } | Action::Interact { object, .. } => Some(object),
-        Action::Place { receptacle } => Some(receptacle),
+        Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => Some(receptacle),
         _ => None,
     }
 }

@@ -24,10 +24,22 @@ impl fmt::Display for PackId {
     }
 }
 
-/// Which packs there are, and their floor plans.
+/// How people speak in a world: to whose words a robot's understanding of it is fitted.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Speech {
+    /// As people at work do.
+    #[default]
+    Office,
+    /// As people at home do.
+    Household,
+}
+
+/// Which packs there are, their floor plans, and how people speak in their world.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Layer {
     pub packs: Vec<PackId>,
+    pub speech: Speech,
     /// `(file name, text)` of floor plans.
     pub plans: Vec<(String, String)>,
 }
@@ -41,6 +53,12 @@ impl Catalog {
     #[must_use]
     pub fn packs(&self) -> &[PackId] {
         &self.layer.packs
+    }
+
+    /// How people speak in this world: as the last pack that says so has it.
+    #[must_use]
+    pub const fn speech(&self) -> Speech {
+        self.layer.speech
     }
 
     /// `(file name, text)` of the packs' floor plans.

@@ -7,7 +7,7 @@ use super::floor::{FreeFloor, is_obstacle};
 use super::footprint::{Footprint, is_clear_of_walls};
 use super::ways::Ways;
 use super::{Layout, Opening, OpeningKind, Placement, Room, RoomId, Viewpoint};
-use crate::catalog::{Catalog, ObjectClass, Property};
+use crate::catalog::{Catalog, ObjectClass, Property, Stands};
 use crate::model::Axis;
 use crate::nearest::nearest;
 
@@ -21,6 +21,8 @@ const CLEAR_BEFORE_DOORS_M: f32 = 0.9;
 const WALKWAY_RADIUS_M: f32 = 0.4;
 /// The farthest that a walkway may end from what is worked from it, m.
 const REACH_M: f32 = 0.85;
+/// The farthest that a robot may stand from what it works over furniture, m; a little less than the world lets it.
+const REACH_OVER_M: f32 = 1.25;
 /// Radius of the robot, m.
 const ROBOT_RADIUS_M: f32 = 0.25;
 /// Half the width of what stands on an anchor, m.
@@ -141,6 +143,10 @@ impl Layout {
         for solid in solids.iter().filter(|solid| solid.is_operable() && solid.placement.on.is_none()) {
             let is_near = |point: &[f32; 2]| solid.print.distance_m(*point) <= REACH_M;
             let is_walked_to = walkways.get(&solid.placement.room).is_some_and(|points| points.iter().any(is_near));
+            let is_at_hand = |(room, point): (RoomId, [f32; 2])| {
+                room == solid.placement.room && solid.print.distance_m(point) <= REACH_OVER_M
+            };
+            let is_walked_to = is_walked_to || (solid.is_worked_over() && standing.points_m().any(is_at_hand));
             let is_of_reached = reached.iter().any(|room| room.id == solid.placement.room);
             if is_of_reached && !is_walked_to && !self.is_door(solid.placement) {
                 faults.push(LayoutFault::Unreachable { instance: solid.placement.instance.clone() });
@@ -220,6 +226,11 @@ impl Solid<'_> {
     fn is_operable(&self) -> bool {
         use Property::{Openable, Powerable, Receptacle, Toggleable, Usable};
         [Openable, Powerable, Receptacle, Toggleable, Usable].into_iter().any(|property| self.class.has(property))
+    }
+
+    /// Whether a hand works it over what stands below: it hangs on a wall, and nothing is put into it.
+    fn is_worked_over(&self) -> bool {
+        self.class.stands == Stands::OnWall && !self.class.has(Property::Receptacle)
     }
 
     /// A button on its machine belongs there.

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::Catalog;
+use crate::{Catalog, WorldData, WorldPack};
 
 #[test]
 fn builtin_plans_have_no_faults() {
@@ -10,6 +10,16 @@ fn builtin_plans_have_no_faults() {
     for id in Layout::builtin_ids() {
         let plan = Layout::builtin(&id).unwrap();
         let faults: Vec<String> = plan.faults(&catalog).iter().map(ToString::to_string).collect();
+        assert!(faults.is_empty(), "{id}:\n{}", faults.join("\n"));
+    }
+}
+
+#[test]
+fn plans_of_homes_have_no_faults() {
+    let homes = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
+    for id in homes.packs()[0].plans() {
+        let plan = Layout::find(id, homes.catalog()).unwrap();
+        let faults: Vec<String> = plan.faults(homes.catalog()).iter().map(ToString::to_string).collect();
         assert!(faults.is_empty(), "{id}:\n{}", faults.join("\n"));
     }
 }

@@ -90,7 +90,7 @@ impl World {
     /// The steps of a command, the next one last, and whether they lead elsewhere than asked.
     fn plan(&mut self, id: BodyId, action: &Action, events: &mut Vec<Event>) -> Result<(Vec<Step>, bool), End> {
         check_numbers(action)?;
-        if let Some(object) = mentioned(action) {
+        for object in mentioned(action).into_iter().chain(action.beside()) {
             let known = self.state.object(object).is_some_and(crate::entity::Object::exists);
             if !known {
                 return Err((Status::InvalidObjectClass, "there is no such object".to_owned()));
@@ -107,7 +107,7 @@ impl World {
             }
             Action::LookAround => Ok((vec![Step::Turn { left_rad: std::f32::consts::TAU }], false)),
             Action::GoTo { target } => self.plan_any_walk(body, target),
-            Action::PickUp { .. } | Action::Place { .. } | Action::Interact { .. } => {
+            Action::PickUp { .. } | Action::Place { .. } | Action::PlaceBeside { .. } | Action::Interact { .. } => {
                 let ruling = rules::rule(&facts, id, action);
                 if ruling.is_plain_refusal() {
                     return Err((ruling.status, ruling.detail));

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use cohabit_cdf::{Catalog, Color, Fluid, Mission, ObjectRequest, Property, RoomId, StateFlag};
 use cohabit_world::{Action, BodyId, Ending, Event, GoToTarget, ObjectId, Status, Verb};
 use support::{Player, build, plain_mission};
-use wishes::{OK, check, flags, fluid, player, request};
+use wishes::{OK, check, flags, fluid, inside, player, request};
 
 const ON_TABLE: &str = "Apple_1 in TableRound_02_1";
 
@@ -507,6 +507,36 @@ fn every_status_has_its_situation_and_its_sentence() {
     ];
     let all: Vec<Status> = told.chain(elsewhere).collect();
     assert!(Status::ALL.iter().all(|status| all.contains(status)));
+}
+
+#[test]
+fn what_is_put_beside_a_thing_stands_next_to_it() {
+    let [plate, bowl] = ["FoodPlate_01_1 in TableRound_02_1", "Bowl_01_1 in TableRound_02_1"];
+    let things = ["TableRound_02_1 emptied", ON_TABLE, plate, bowl];
+    let mut player = player(RoomId::BREAK_ROOM, &things);
+    let (table, apple) = (player.id("TableRound_02_1"), player.id("Apple_1"));
+    for other in ["FoodPlate_01_1", "Bowl_01_1"] {
+        player.must(&["goto Apple_1", "pickup Apple_1"]);
+        let beside = player.id(other);
+        let outcome = player.play(Action::PlaceBeside { receptacle: table, beside });
+        assert_eq!(outcome.status, OK, "{other}: {}", outcome.detail);
+        assert!(outcome.detail.contains("beside"), "{}", outcome.detail);
+        let [one, two] = [apple, beside].map(|id| player.world.object(id).unwrap().position_m);
+        assert!(one.distance(two) < 0.32, "{other}: {one} {two}");
+        assert_eq!(inside(&player, "Apple_1").as_deref(), Some("TableRound_02_1"));
+    }
+}
+
+#[test]
+fn what_cannot_stand_beside_a_thing_is_put_where_there_is_room() {
+    let mut player = player(RoomId::BREAK_ROOM, &["TableRound_02_1 emptied", ON_TABLE]);
+    let (table, fridge) = (player.id("TableRound_02_1"), player.id("FridgeLower_02_10000"));
+    player.must(&["goto Apple_1", "pickup Apple_1"]);
+    let nobody = player.play(Action::PlaceBeside { receptacle: table, beside: ObjectId(u32::MAX) });
+    assert_eq!(nobody.status, Status::InvalidObjectClass);
+    let outcome = player.play(Action::PlaceBeside { receptacle: table, beside: fridge });
+    assert_eq!(outcome.status, Status::AlternateNavigationUsed, "{}", outcome.detail);
+    assert_eq!(inside(&player, "Apple_1").as_deref(), Some("TableRound_02_1"));
 }
 
 #[test]

@@ -5,6 +5,7 @@
   :func:`sample_actions` is one that does what may be tried, by chance.
 - :func:`tools` describes what a body can do to language models.
 - :func:`join` joins a running session.
+- :func:`steps` tells a recorded session step by step, and :func:`rerun` goes on from one of them otherwise.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ from .env import Env
 from .evaluation import Evaluation, evaluate
 from .missions import Mission, Suite, generate, suite
 from .parallel import ParallelEnv
+from .recorded import rerun, steps
 from .records import records
 from .sensing import CHOICES, PLANES, sample_actions
 from .session import Session, join
@@ -89,7 +91,9 @@ __all__ = [
     "generate",
     "join",
     "records",
+    "rerun",
     "sample_actions",
+    "steps",
     "suite",
     "tools",
 ]

@@ -10,7 +10,7 @@ import difflib
 import math
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Protocol, Union
+from typing import Optional, Protocol, Union
 
 from . import _native
 
@@ -158,13 +158,20 @@ class PickUp:
 
 @dataclass(frozen=True)
 class Place:
-    """Put what is held onto or into a receptacle."""
+    """Put what is held onto or into a receptacle: at the free place nearest to ``beside``, if that is given.
+
+    Where there is no room beside that, it is put all the same, and the status is ``AlternateNavigationUsed``.
+    """
 
     receptacle: ObjectRef
+    beside: Optional[ObjectRef] = None
 
     def plain(self, state: Names, body: int) -> _native.Action:
         """The action with its objects as numbers."""
-        return _native.Action.place(resolve(self.receptacle, state, body))
+        receptacle = resolve(self.receptacle, state, body)
+        if self.beside is None:
+            return _native.Action.place(receptacle)
+        return _native.Action.place(receptacle, resolve(self.beside, state, body))
 
 
 @dataclass(frozen=True)

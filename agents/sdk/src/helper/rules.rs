@@ -39,10 +39,11 @@ pub(super) struct Condition {
 }
 
 impl Condition {
-    /// Whether it holds.
+    /// Whether it holds. What is built open, such as curtains, does not stand open by mistake.
     pub fn holds(&self, class: &ObjectClass, flags: StateFlags) -> bool {
         let is_so = self.is.is_none_or(|flag| flags.has(flag));
-        class.has(self.property) && is_so && !flags.has(StateFlag::Sparking)
+        let is_built_so = self.is == Some(StateFlag::Opened) && class.as_built.contains(&StateFlag::Opened);
+        class.has(self.property) && is_so && !is_built_so && !flags.has(StateFlag::Sparking)
     }
 }
 
@@ -170,6 +171,16 @@ mod tests {
         ] {
             let Some(id) = homes.catalog().find(class) else { panic!("{class}") };
             assert_eq!(is_table(homes.catalog().class(id)), expected, "{class}");
+        }
+    }
+
+    #[test]
+    fn what_is_built_open_does_not_stand_open_by_mistake() {
+        let homes = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
+        let open = Condition { property: Property::Openable, is: Some(StateFlag::Opened) };
+        for (class, expected) in [("Curtains", false), ("Wardrobe", true)] {
+            let class = homes.catalog().class(homes.catalog().find(class).unwrap());
+            assert_eq!(open.holds(class, StateFlags::default().with(StateFlag::Opened)), expected, "{}", class.id);
         }
     }
 

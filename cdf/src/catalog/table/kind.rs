@@ -60,7 +60,7 @@ impl ActionKind {
         Some(match *action {
             Action::GoTo { target: GoToTarget::Object(object) } => (Self::GoTo, object),
             Action::PickUp { object } => (Self::PickUp, object),
-            Action::Place { receptacle } => (Self::Place, receptacle),
+            Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => (Self::Place, receptacle),
             Action::Interact { verb, object } => (Self::of_verb(verb), object),
             _ => return None,
         })
@@ -143,6 +143,8 @@ mod tests {
         for kind in ActionKind::ALL {
             assert_eq!(ActionKind::of(&kind.on(ObjectId(7))), Some((kind, ObjectId(7))));
         }
+        let beside = Action::place(ObjectId(7), Some(ObjectId(8)));
+        assert_eq!(ActionKind::of(&beside), Some((ActionKind::Place, ObjectId(7))));
         assert_eq!(ActionKind::of(&Action::Stop), None);
     }
 }

@@ -18,7 +18,7 @@ pub struct ActionRecord {
     verb: u32,
     /// `RoomId`, of those that are built in.
     room: u32,
-    /// Which of the room's viewpoints, from 1.
+    /// Which of the room's viewpoints, from 1; or the index of what something is put beside.
     number: u32,
     /// A distance in m, an angle in rad, or a speed in m/s.
     value: f32,
@@ -70,6 +70,8 @@ const DRIVE: u32 = 14;
 const GO_TO_NAMED_ROOM: u32 = 15;
 /// Walk to viewpoint `number` of the `room` of a `NamedRoomRecord`.
 const GO_TO_NAMED_VIEWPOINT: u32 = 16;
+/// Put what is held on or into `object`, beside the object of the index `number`.
+const PLACE_BESIDE: u32 = 17;
 
 impl From<Action> for ActionRecord {
     fn from(action: Action) -> Self {
@@ -89,6 +91,9 @@ impl From<Action> for ActionRecord {
             },
             Action::PickUp { object } => Self { object: object.0, ..of(PICK_UP) },
             Action::Place { receptacle } => Self { object: receptacle.0, ..of(PLACE) },
+            Action::PlaceBeside { receptacle, beside } => {
+                Self { object: receptacle.0, number: beside.0, ..of(PLACE_BESIDE) }
+            }
             Action::Interact { verb, object } => Self { verb: verb as u32, object: object.0, ..of(INTERACT) },
             Action::Highlight { object } => Self { object: object.0, ..of(HIGHLIGHT) },
             Action::Stop => of(STOP),
@@ -144,6 +149,7 @@ impl TryFrom<ActionRecord> for Action {
             }
             PICK_UP => Self::PickUp { object },
             PLACE => Self::Place { receptacle: object },
+            PLACE_BESIDE => Self::PlaceBeside { receptacle: object, beside: ObjectId(record.number) },
             INTERACT => {
                 let verb = Verb::ALL.get(record.verb as usize).copied().ok_or(Malformed("no such verb"))?;
                 Self::Interact { verb, object }
@@ -176,6 +182,7 @@ mod tests {
             Action::GoTo { target: GoToTarget::Point([1.0, -2.0]) },
             Action::PickUp { object: ObjectId(3) },
             Action::Place { receptacle: ObjectId(4) },
+            Action::PlaceBeside { receptacle: ObjectId(4), beside: ObjectId(0) },
             Action::Highlight { object: ObjectId(5) },
             Action::Stop,
             Action::Drive { forward_m_s: -1.0, turn_rad_s: 0.5, pitch_rad_s: 0.25 },

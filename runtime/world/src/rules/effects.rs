@@ -37,7 +37,7 @@ fn effects_of_one(observer: &Observer<'_>, scope: &Scope, change: &Change) -> Op
         // A walk is ruled by the ways that there are.
         Change::Approach(_) => Vec::new(),
         Change::Take(of) => vec![Effect::Hold(id(of)?, observer.body?)],
-        Change::Put(of, to) => vec![places::put(facts, observer.body?, id(of)?, id(to)?)?],
+        Change::Put(of, to) => vec![places::put(observer, id(of)?, id(to)?)?],
         Change::Throw(of) => vec![throw(facts, observer.body?, id(of)?, scope.it?)],
         Change::Send(of, by) => portal::pass(facts, id(by)?, id(of)?)?,
         Change::Flip(of, other) => {

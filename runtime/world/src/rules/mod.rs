@@ -90,7 +90,9 @@ fn names_of(facts: &Facts<'_>, classes: &[String]) -> String {
 pub(crate) fn rule(facts: &Facts<'_>, body: BodyId, action: &Action) -> Ruling {
     match ActionKind::of(action) {
         None | Some((ActionKind::GoTo, _)) => Ruling::done("done", Vec::new()),
-        Some((kind, object)) => Scene { facts, body }.rule(kind, object).unwrap_or_else(|refusal| refusal),
+        Some((kind, object)) => {
+            Scene { facts, body, beside: action.beside() }.rule(kind, object).unwrap_or_else(|refusal| refusal)
+        }
     }
 }
 
@@ -98,7 +100,7 @@ pub(crate) fn rule(facts: &Facts<'_>, body: BodyId, action: &Action) -> Ruling {
 pub(crate) fn object_of(action: &Action) -> Option<ObjectId> {
     match *action {
         Action::PickUp { object } | Action::Interact { object, .. } | Action::Highlight { object } => Some(object),
-        Action::Place { receptacle } => Some(receptacle),
+        Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => Some(receptacle),
         _ => None,
     }
 }
@@ -107,11 +109,13 @@ pub(crate) fn object_of(action: &Action) -> Option<ObjectId> {
 struct Scene<'a> {
     facts: &'a Facts<'a>,
     body: BodyId,
+    /// What it is to put something beside.
+    beside: Option<ObjectId>,
 }
 
 impl<'a> Scene<'a> {
     const fn observer(&self) -> Observer<'a> {
-        Observer { facts: self.facts, body: Some(self.body) }
+        Observer { facts: self.facts, body: Some(self.body), beside: self.beside }
     }
 
     /// What an action on an object comes to.
@@ -131,7 +135,20 @@ impl<'a> Scene<'a> {
             Some(device) => press::told(&observer, object, device, &pressed),
             None => self.read(object, &changes).unwrap_or_else(|| self.told(&rule.done, object)),
         };
-        Ok(Ruling::done(detail, effects))
+        Ok(self.put_beside(Ruling::done(detail, effects)))
+    }
+
+    /// The same, where something was to be put beside another thing: it says whether it stands there, or where there was room.
+    fn put_beside(&self, ruling: Ruling) -> Ruling {
+        let facts = self.facts;
+        let Some(other) = self.beside else { return ruling };
+        let Some(is_beside) = places::is_put_beside(facts, &ruling.effects, other) else { return ruling };
+        let (other, held) = (facts.name(other), self.held().map_or_else(|| "it".to_owned(), |held| facts.name(held)));
+        if is_beside {
+            return Ruling { detail: format!("I put {held} beside {other}"), ..ruling };
+        }
+        let detail = format!("there is no room beside {other}, so I put {held} where there is some");
+        Ruling { status: Status::AlternateNavigationUsed, detail, ..ruling }
     }
 
     /// What the table says of an action, or the refusal that it comes to.

@@ -12,6 +12,8 @@ use crate::{anchors::free_anchors, facts::Facts, works as machines, works::porta
 pub(crate) struct Observer<'a> {
     pub facts: &'a Facts<'a>,
     pub body: Option<BodyId>,
+    /// What something is to be put beside, if that was said.
+    pub beside: Option<ObjectId>,
 }
 
 impl View for Observer<'_> {
@@ -60,7 +62,7 @@ impl View for Observer<'_> {
     }
 
     fn basin(&self) -> Option<ObjectId> {
-        let scene = Scene { facts: self.facts, body: self.body? };
+        let scene = Scene { facts: self.facts, body: self.body?, beside: self.beside };
         scene.basin()
     }
 
@@ -96,7 +98,7 @@ impl View for Observer<'_> {
     }
 
     fn has_room_for(&self, id: ObjectId, thing: ObjectId) -> bool {
-        self.body.is_some_and(|body| places::best_anchor(self.facts, body, id, thing).is_some())
+        self.body.is_some_and(|body| places::best_anchor(self.facts, body, id, thing, None).is_some())
     }
 
     fn has_free_place(&self, id: ObjectId) -> bool {

@@ -19,7 +19,7 @@ pub(crate) fn effects_of_work(facts: &Facts<'_>, machine: ObjectId, work: Work, 
 
 /// What a work of the table changes at `site`; `by` is what was pressed for it.
 fn effects_at(facts: &Facts<'_>, work: &Entry, by: ObjectId, site: ObjectId) -> Vec<Effect> {
-    let observer = Observer { facts, body: None };
+    let observer = Observer { facts, body: None, beside: None };
     let things = match work.over {
         Over::Contents => facts.contents(site),
         Over::Inside => facts.held_in(site),
