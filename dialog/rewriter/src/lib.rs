@@ -26,6 +26,8 @@ use crate::{
 };
 
 static MODEL: &[u8] = include_bytes!("../rewriter.safetensors");
+/// What is added to it for people at home.
+static HOUSEHOLD: &[u8] = include_bytes!("../household.safetensors");
 
 /// Why a model cannot be used.
 #[derive(Clone, Debug, Eq, PartialEq, thiserror::Error)]
@@ -53,13 +55,30 @@ pub fn builtin() -> &'static Rewriter {
     &BUILTIN
 }
 
+/// The same, adapted to how people at home speak.
+///
+/// # Panics
+/// Never: its adapter is checked by a test.
+#[must_use]
+pub fn household() -> &'static Rewriter {
+    static ADAPTED: LazyLock<Rewriter> = LazyLock::new(|| {
+        Rewriter::adapted(MODEL, HOUSEHOLD)
+            .unwrap_or_else(|error| panic!("dialog/rewriter/household.safetensors: {error}"))
+    });
+    &ADAPTED
+}
+
 /// What an utterance may mean, as the rewriter that comes with the project has it: plain requests with their probabilities, best first. Behind
 /// `social` stands of what kind the talk is, where that is known: `social: thanks`.
 #[must_use]
 pub fn rewrite(utterance: &str, before: &[Line], around: &str) -> Vec<(String, f32)> {
-    let rewritings = builtin().rewrite(utterance, before, around).into_iter();
-    let told = |text: String| if text == TALK { builtin().talk_kind(utterance, before).unwrap_or(text) } else { text };
-    rewritings.map(|rewriting| (told(rewriting.text), rewriting.probability)).collect()
+    builtin().meanings(utterance, before, around)
+}
+
+/// The same of what somebody says at home.
+#[must_use]
+pub fn rewrite_at_home(utterance: &str, before: &[Line], around: &str) -> Vec<(String, f32)> {
+    household().meanings(utterance, before, around)
 }
 
 /// The most tokens that are read of what is around the robot, the last ones.
@@ -116,13 +135,30 @@ impl Rewriter {
     /// # Errors
     /// What is wrong with the file.
     pub fn new(model: &[u8]) -> Result<Self, ModelError> {
-        let tensors = Tensors::new(model)?;
+        Self::of(&Tensors::new(model)?)
+    }
+
+    /// With the weights of such a file, changed by an adapter that `train/adapt.py` has written.
+    ///
+    /// # Errors
+    /// What is wrong with one of the files.
+    pub fn adapted(model: &[u8], adapter: &[u8]) -> Result<Self, ModelError> {
+        Self::of(&Tensors::new(model)?.adapted(adapter)?)
+    }
+
+    fn of(tensors: &Tensors<'_>) -> Result<Self, ModelError> {
         let tokens = Tokens::new(tensors.note("tokens")?);
-        let network = Transformer::new(&tensors)?;
+        let network = Transformer::new(tensors)?;
         if network.tokens() != tokens.len() || network.marks() < MARKS {
             return Err(ModelError::Shape("tokens".to_owned()));
         }
         Ok(Self { network, tokens, read_before: ReadBefore::default() })
+    }
+
+    fn meanings(&self, utterance: &str, before: &[Line], around: &str) -> Vec<(String, f32)> {
+        let rewritings = self.rewrite(utterance, before, around).into_iter();
+        let told = |text: String| if text == TALK { self.talk_kind(utterance, before).unwrap_or(text) } else { text };
+        rewritings.map(|rewriting| (told(rewriting.text), rewriting.probability)).collect()
     }
 
     /// The likeliest meanings of an utterance, best first, given the lines of the dialog before it, the latest last, and what is around the robot, which

@@ -199,7 +199,8 @@ class Row:
 class Samples:
     """Draws utterances with their labels, and variants of them."""
 
-    def __init__(self, seed, often=()):
+    def __init__(self, seed, often=(), often_share=0.5):
+        self.often_share = often_share
         self.random = random.Random(seed)
         writers = sorted(file.stem for file in corpus.WRITERS.glob("*.txt") if file.stem not in UNSEEN)
         written = [sample for writer in writers for sample in of_writer(writer)]
@@ -233,7 +234,7 @@ class Samples:
     def family(self):
         """The tokens that are read of a place, and those of some utterances there: what is read of each, and what is to be written."""
         chance = self.random.random
-        drawn = self.often if self.often.samples and chance() < 0.5 else self.corpus if chance() < CORPUS_SHARE else self.written
+        drawn = self.often if self.often.samples and chance() < self.often_share else self.corpus if chance() < CORPUS_SHARE else self.written
         first = self.random.choice(drawn.samples)
         same = drawn.by_place[first[0]]
         samples = [first, *self.random.sample(same, min(len(same), FAMILY) - 1)]
@@ -343,12 +344,12 @@ def surest(labels):
 class Batches(IterableDataset):
     """Batches without end, which as many processes as are asked for draw ahead."""
 
-    def __init__(self, seed, size, often):
-        self.seed, self.size, self.often = seed, size, often
+    def __init__(self, seed, size, often, often_share=0.5):
+        self.seed, self.size, self.often, self.often_share = seed, size, often, often_share
 
     def __iter__(self):
         worker = get_worker_info()
-        return Samples(1000 * self.seed + (worker.id if worker else 0), self.often).batches(self.size)
+        return Samples(1000 * self.seed + (worker.id if worker else 0), self.often, self.often_share).batches(self.size)
 
 
 def train(model, given):
