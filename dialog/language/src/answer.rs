@@ -3,8 +3,10 @@
 pub(crate) mod claim;
 mod claimed;
 mod facts;
+mod needs;
 mod places;
 mod robot;
+mod state;
 mod things;
 
 use cohabit_cdf::{Catalog, ObjectId, Property};
@@ -101,6 +103,7 @@ impl Answerer<'_> {
                 self.seeing()
             }
             (QuestionKind::Which, Some(phrase)) => self.which(phrase, question),
+            (QuestionKind::OfKind, Some(phrase)) => self.of_kind(phrase).with_yes_or_no(question.is_whether),
             (QuestionKind::Rest, _) => self.goals(),
             (QuestionKind::Said, _) => self.said(),
             (QuestionKind::Recording, _) => Understanding::whether(true, RECORDED, Vec::new()),
@@ -140,6 +143,7 @@ impl Answerer<'_> {
                 self.with_object(phrase, |id| self.contents(id)).with_yes_or_no(question.is_whether)
             }
             (QuestionKind::Near, Some(phrase)) => self.with_object(phrase, |id| self.neighbours(id)),
+            (QuestionKind::Before, Some(phrase)) => self.with_object(phrase, |id| self.before(id)),
             (QuestionKind::Under, Some(phrase)) => {
                 self.with_object(phrase, |id| self.under(id)).with_yes_or_no(question.is_whether)
             }
@@ -197,6 +201,10 @@ impl Answerer<'_> {
                 let phrase = Phrase { text: question.rest.join(" "), ..Phrase::default() };
                 let text = saying::noun(&phrase).map(|noun| format!("I do not know what \"{noun}\" is."));
                 Understanding::lost(text.unwrap_or_else(|| saying::unresolved(&phrase)))
+            }
+            // `where is it?`
+            (QuestionKind::Where, None) if let Some(id) = self.context.focus.recent.first() => {
+                Understanding::about(prose::sentence(&self.place_sentence(*id)), vec![*id])
             }
             (QuestionKind::Where, None) => Understanding::lost("I cannot tell what you mean. Name it to me, please."),
             _ => Understanding::lost(format!(
@@ -275,7 +283,7 @@ impl Answerer<'_> {
         }
         let said = saying::said(phrase);
         if self.scene.floor.is_some() && (phrase.unknown.is_empty() || !phrase.namings.is_empty()) {
-            let text = format!("I have not seen {said} yet. Shall I look for it?");
+            let text = format!("I have not seen {said} yet. Shall I look for {}?", prose::it(&said));
             return crate::say::ask::confirmation(text);
         }
         let text = format!("I have not seen {said}. I can look around if you want.");

@@ -2,6 +2,7 @@
 
 pub(crate) mod awaited;
 mod deeds;
+pub(crate) mod failure;
 pub(crate) mod search;
 
 use cohabit_cdf::{ObjectId, Status};
@@ -11,6 +12,7 @@ use crate::{
     context::{
         awaited::Awaited,
         deeds::Deeds,
+        failure::Failure,
         search::{Consent, Search},
     },
     ground::focus::Focus,
@@ -50,6 +52,9 @@ pub struct Context {
     /// Why what was asked for last cannot be done.
     #[serde(default)]
     pub(crate) refused: Option<String>,
+    /// The request that cannot be done for that reason.
+    #[serde(default)]
+    pub(crate) impossible: Vec<Clause>,
     /// What of the last request is not done by its plan, and why.
     #[serde(default)]
     pub(crate) left_out: Option<String>,
@@ -64,6 +69,9 @@ pub struct Context {
     /// What it did.
     #[serde(default)]
     pub(crate) deeds: Deeds,
+    /// The goals that were met before it did anything.
+    #[serde(default)]
+    pub(crate) met_before: Vec<String>,
     /// The request that waits until what it names is found.
     pub(crate) search: Option<Search>,
     /// What is to be done or answered once the plan under way has ended, each as somebody would say it. A goal that is met by then is
@@ -100,20 +108,15 @@ pub struct Context {
     /// Whether what was asked for last was found to be so already.
     #[serde(default)]
     pub(crate) is_met: bool,
+    /// What was taken for the thing that was meant, where what was said last says that another one was.
+    #[serde(default)]
+    pub(crate) mistaken: Option<ObjectId>,
     /// What was said last, the latest last: whether the robot said it, and what.
     #[serde(default)]
     pub(crate) lines: Vec<(bool, String)>,
     /// How likely what was understood last is what was meant.
     #[serde(default)]
     pub(crate) sureness: f32,
-}
-
-/// A step that failed.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub(crate) struct Failure {
-    pub(crate) step: Step,
-    pub(crate) status: Status,
-    pub(crate) rest: Vec<Step>,
 }
 
 /// A question of the robot's that waits for its answer.
@@ -139,6 +142,17 @@ pub(crate) enum Pending {
     Guess { guesses: Vec<Guess> },
     /// Whether to do this, too, besides the plan under way; whether that was asked once more when it had ended.
     Also { guess: Box<Guess>, question: String, is_asked: bool },
+}
+
+impl Pending {
+    /// Whether it asks which of several plans is meant.
+    pub(crate) const fn offers_several(&self) -> bool {
+        match self {
+            Self::Offer { plans } => plans.len() > 1,
+            Self::Guess { guesses } => guesses.len() > 1,
+            _ => false,
+        }
+    }
 }
 
 /// A plan that the robot asks about, with what is to follow it.
@@ -172,7 +186,7 @@ impl Guess {
 impl Context {
     /// The same before anything is made of a new utterance.
     pub(crate) fn at_new_utterance(&self) -> Self {
-        Self { is_met: false, answered: String::new(), unwatched: None, ..self.clone() }
+        Self { is_met: false, answered: String::new(), unwatched: None, mistaken: None, ..self.clone() }
     }
 
     /// Takes note of what the robot or a person said. [`crate::Language::understand`] notes what it is told and replies; this is for what
@@ -200,13 +214,19 @@ impl Context {
 
     /// What the robot did last has met the goals that are met now and were not before.
     pub(crate) fn credit_goals(&mut self, scene: &Known) {
-        self.deeds.credit(scene.goals.iter().filter(|goal| goal.met).map(|goal| goal.text.as_str()));
+        let met = || scene.goals.iter().filter(|goal| goal.met).map(|goal| goal.text.as_str());
+        if self.deeds.is_empty() {
+            self.met_before = met().map(str::to_owned).collect();
+        }
+        let Self { deeds, met_before, .. } = self;
+        deeds.credit(met().filter(|goal| !met_before.iter().any(|known| known == goal)));
     }
 
     /// Takes note of what came of a step: `yes` after a failure then means the remedy that
     /// [`crate::Language::report`] offered.
     pub fn note_outcome(&mut self, step: &Step, status: Status) {
         let done = self.running.iter().position(|planned| planned.action == step.action);
+        let before = self.done_of_plan(done);
         // Something else was done in between, such as pointing out what a question is about.
         if (done.is_none() || status == Status::Interrupted)
             && let (Some(search), Some(leg)) = (&mut self.search, self.running.get(done.unwrap_or(0)))
@@ -223,6 +243,9 @@ impl Context {
             self.running = rest;
             return;
         }
+        if done.is_some() && !self.search.as_ref().is_some_and(Search::is_under_way) {
+            self.deeds.cut_short(&self.reason);
+        }
         self.running.clear();
         self.later.clear();
         self.agreed = None;
@@ -234,7 +257,14 @@ impl Context {
             return;
         }
         self.search = None;
-        self.failed = (status != Status::Interrupted).then(|| Failure { step: step.clone(), status, rest });
+        self.failed = (status != Status::Interrupted)
+            .then(|| Failure::new(step.clone(), status, &self.last_plan[..before], rest));
+    }
+
+    /// How many steps of the last plan were done before the one that stands at this place in what is left of it.
+    fn done_of_plan(&self, at: Option<usize>) -> usize {
+        let is_of_plan = !self.running.is_empty() && self.last_plan.ends_with(&self.running);
+        at.filter(|_| is_of_plan).map_or(0, |at| self.last_plan.len() - self.running.len() + at)
     }
 
     /// Takes note of a plan that is about to be carried out.
@@ -246,6 +276,7 @@ impl Context {
         (self.left_undone, self.halted) = (0, None);
         self.planned_for.clone_from(&self.reason);
         (self.refused, self.left_out) = (None, None);
+        self.impossible.clear();
         self.request.clear();
         self.later.clear();
         self.agreed = None;
@@ -325,6 +356,7 @@ impl Context {
     /// Takes note of what is under way, which is about to be stopped.
     pub(crate) fn halt(&mut self) {
         if self.is_busy() {
+            self.deeds.cut_short(&self.reason);
             self.halted = Some(self.guess(&self.running));
         }
     }
@@ -365,7 +397,13 @@ impl Context {
     #[must_use]
     pub const fn awaits_more(&self) -> bool {
         let is_offered = matches!(self.pending, Some(Pending::Also { is_asked: false, .. }));
-        self.search.is_some() || !self.later.is_empty() || self.agreed.is_some() || is_offered
+        let is_left = matches!(&self.failed, Some(failure) if failure.has_apart());
+        self.search.is_some() || !self.later.is_empty() || self.agreed.is_some() || is_offered || is_left
+    }
+
+    /// Whether a question is answered next.
+    pub(crate) fn answers_next(&self) -> bool {
+        self.search.is_none() && self.later.first().is_some_and(|next| next.trim_end().ends_with('?'))
     }
 
     /// Whether the robot is looking for something or follows somebody: how the parts of that end is not worth telling.

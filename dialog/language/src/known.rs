@@ -10,8 +10,9 @@ pub(crate) mod memory;
 pub(crate) mod process;
 pub(crate) mod sight;
 pub(crate) mod surroundings;
-mod symbols;
+pub(crate) mod symbols;
 mod uses;
+pub(crate) mod vending;
 
 use cohabit_cdf::{
     Catalog, ClassId, Color, Fluid, Layout, ObjectId, RoomId,

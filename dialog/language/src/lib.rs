@@ -68,7 +68,7 @@ pub use talk::{
     interpret::{Consulting, Interpreted, Interpreter, Meant, Unclear},
     spoken::{SpokenNames, says_stop, says_stop_already},
 };
-pub use understanding::{Asking, Clarification, Effort, Step, Understanding};
+pub use understanding::{Alternative, Asking, Clarification, Effort, Step, Understanding};
 pub use words::address::{Addressed, Roster};
 
 use crate::{
@@ -188,8 +188,8 @@ impl Language {
     pub fn report_missing(&self, id: ObjectId, scene: &Known, context: &mut Context) -> Understanding {
         let the = describe::short(&self.catalog, scene, id);
         context.await_search();
-        let gone = prose::sentence(&format!("{the} is not there any more"));
-        ask::confirmation(format!("{gone} Shall I look for it?"))
+        let gone = prose::sentence(&format!("{the} {} not there any more", prose::is(&the)));
+        ask::confirmation(format!("{gone} Shall I look for {}?", prose::it(&the)))
     }
 
     /// What it means that somebody points at `object`: the answer to a question of the robot's, or what is spoken of
@@ -235,10 +235,34 @@ impl Language {
         self.conversation(scene).referents(utterance, context)
     }
 
+    /// What a plan that failed left open or on and would have closed or turned off itself, to be closed and turned off now; nothing, where it
+    /// left nothing so. What was offered after the failure stays offered: [`Context::note_outcome`] need not be told of the failure of this.
+    #[must_use]
+    pub fn put_right(&self, scene: &Known, context: &Context) -> Option<Understanding> {
+        let steps = context.failed.as_ref()?.put_right(scene);
+        let says: Vec<String> = steps.iter().map(|step| step.says.clone()).collect();
+        let reply = prose::sentence(&format!("I am {} again", prose::list(&says, "and")));
+        (!steps.is_empty()).then_some(Understanding::Plan { steps, reply })
+    }
+
     /// The ways to take an utterance by what its rewriter writes, with what speaks for each: what weights are fitted to.
     #[must_use]
     pub fn ways(&self, utterance: &str, scene: &Known, context: &Context) -> Vec<(String, Understanding, Evidence)> {
         self.conversation(scene).all_ways(utterance, context)
+    }
+
+    /// All ways to take an utterance, with how likely each is the one that is meant: that of the grammar, then those of the rewriter, the
+    /// likeliest first.
+    #[must_use]
+    pub fn alternatives(&self, utterance: &str, scene: &Known, context: &Context) -> Vec<Alternative> {
+        self.conversation(scene).alternatives(utterance, context)
+    }
+
+    /// Whether what came of the last step of a plan is worth a sentence: that a close look found nothing to read is not, where it was only
+    /// taken to answer a question.
+    #[must_use]
+    pub fn is_worth_telling(&self, step: &Step, scene: &Known, context: &Context) -> bool {
+        !(context.answers_next() && report::finds_nothing(&self.catalog, scene, step))
     }
 
     fn conversation<'a>(&'a self, scene: &'a Known) -> Conversation<'a> {

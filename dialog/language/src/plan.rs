@@ -1,5 +1,6 @@
 //! From clauses to steps: each clause is grounded on the scene as the steps before it are expected to leave it.
 
+mod beside;
 mod breakage;
 mod carry;
 mod clauses;
@@ -80,6 +81,8 @@ pub(crate) struct Planner<'a> {
     pub(crate) clause: usize,
     /// What was done already to which thing: nobody wants it repaired twice.
     pub(crate) brought_about: Vec<(Intent, ObjectId)>,
+    /// Which steps turn off what the request has not asked for to be off.
+    pub(crate) turned_off: Vec<usize>,
     /// The steps, and what was spoken of, when that clause was begun.
     pub(crate) begun: (usize, Focus),
 }
@@ -111,6 +114,7 @@ impl<'a> Planner<'a> {
             has_looked: false,
             clause: 0,
             brought_about: Vec::new(),
+            turned_off: Vec::new(),
         }
     }
 

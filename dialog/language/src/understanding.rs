@@ -136,6 +136,20 @@ impl Understanding {
     }
 }
 
+/// A way to take an utterance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alternative {
+    /// The words that are read: those that were said, or the plain requests that the rewriter makes of them.
+    pub text: String,
+    /// Whether it is what the grammar makes of the words that were said.
+    pub by_grammar: bool,
+    /// What it would mean.
+    pub understanding: Understanding,
+    /// How likely it is the one that is meant, from 0 to 1. Those of the rewriter are weighed among each other, so these and that of the
+    /// grammar need not add up to 1.
+    pub probability: f32,
+}
+
 /// Kinds of questions the robot asks: the four of Alexa Arena (location, appearance, direction, reference), a
 /// confirmation, and what is to be done at all.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, Hash, Ord, PartialEq, PartialOrd, Serialize)]
@@ -207,6 +221,7 @@ impl Step {
         match self.action {
             Action::PickUp { object }
             | Action::Place { receptacle: object }
+            | Action::PlaceBeside { receptacle: object, .. }
             | Action::Interact { object, .. }
             | Action::Highlight { object }
             | Action::GoTo { target: GoToTarget::Object(object) } => Some(object),
@@ -227,7 +242,7 @@ impl Step {
 
     /// Whether something else than the robot and its hand is another after it.
     pub(crate) const fn changes(&self) -> bool {
-        matches!(self.action, Action::Interact { .. } | Action::Place { .. })
+        matches!(self.action, Action::Interact { .. } | Action::Place { .. } | Action::PlaceBeside { .. })
     }
 
     /// Whether what it changes is not simply put back.

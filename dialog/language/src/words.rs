@@ -6,7 +6,7 @@ mod files;
 pub(crate) mod inflect;
 pub(crate) mod intent;
 pub(crate) mod lexicon;
-mod lists;
+pub(crate) mod lists;
 mod misheard;
 mod naming;
 mod normalise;

@@ -85,6 +85,19 @@ fn answers_come_in_any_form() {
 }
 
 #[test]
+fn the_same_is_not_asked_twice_in_a_row() {
+    let check = |marks: &[&str], script: &str| check(Asking::Unsure, marks, script);
+    let asked = "> pick up the hammer\n? I have not seen a hammer. Where is it, or shall I look around?";
+    check(&["without Hammer_1"], &format!("{asked}\n> pick up the hammer\nlook around"));
+    check(&["without Hammer_1"], &format!("{asked}\n> where is the milk?\n= The milk…\n{asked}"));
+    let mut talk = Talk::asking(&[], Asking::Unsure);
+    let first = talk.say("pick up the mug");
+    let second = talk.say("yes");
+    assert_eq!(second, format!("{first} Name one of them, or say its number."));
+    assert_eq!(talk.say("the second one"), "take CoffeeMug_Yellow_1");
+}
+
+#[test]
 fn which_way_and_what_it_looks_like_are_answered() {
     let check = |marks: &[&str], script: &str| check(Asking::Unsure, marks, script);
     check(&[], "> turn\n? Which direction should I turn to?\n> to the left\nturn 90");

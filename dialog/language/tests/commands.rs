@@ -1,6 +1,6 @@
 //! What people say, and the steps it means, in a small office.
 
-use crate::support::{Talk, catalog, scene, text};
+use crate::support::{Talk, catalog, neighbours, scene, text};
 
 use cohabit_language::{Context, Language};
 
@@ -52,6 +52,9 @@ fn going_places() {
         find the hammer -> go Hammer_1
         look for the milk -> go MilkCarton_01_1
         go to the red computer -> go V_Monitor_Laser_1
+        go to the red and white laser -> go Laser_1
+        go to the white and red laser -> go Laser_1
+        pick up the black and blue record -> take Record_01_1
         find the printer -> go Printer_3D_1
         walk down the hallway -> go Hallway
         go stand in front of the gravity pad -> go GravityPad_1
@@ -157,6 +160,60 @@ fn what_cannot_be_carried_is_said_of_all_of_it_and_the_rest_is_done() {
     assert!(why.reply().starts_with("I cannot pick up the fridge: it is not made"), "{}", why.reply());
 }
 
+/// Each line `utterance -> steps | what things are put beside`.
+fn check_beside(marks: &[&str], table: &str) {
+    let catalog = catalog();
+    let language = Language::new(catalog.clone());
+    let known = scene(&catalog, marks);
+    for line in table.lines().map(str::trim) {
+        let (utterance, expected) = line.split_once(" -> ").unwrap_or_else(|| panic!("no arrow in {line:?}"));
+        let understood = language.understand(utterance, &known, &mut Context::default());
+        let found = format!("{} | {}", text(&understood, &known), neighbours(&understood, &known).join(", "));
+        assert_eq!(found.trim_end(), expected, "{utterance}");
+    }
+}
+
+#[test]
+fn what_is_put_next_to_a_thing_is_put_beside_it_where_that_stands() {
+    check_beside(
+        &["held Bowl_01_1"],
+        "put the bowl next to the plate -> put TableRound_02_1 | FoodPlate_01_1
+        put it beside the plate -> put TableRound_02_1 | FoodPlate_01_1
+        place the bowl near the plate -> put TableRound_02_1 | FoodPlate_01_1
+        put the bowl close to the plate -> put TableRound_02_1 | FoodPlate_01_1
+        put it by the plate -> put TableRound_02_1 | FoodPlate_01_1
+        put the bowl next to the knife -> put KitchenCounterTop_02_1 | Knife_01_1
+        put the bowl next to the microwave -> put KitchenCounterTop_02_1 | Microwave_01_1
+        put the bowl on the table next to the plate -> put TableRound_02_1 | FoodPlate_01_1
+        put the bowl next to the plate on the table -> put TableRound_02_1 | FoodPlate_01_1
+        put the bowl on the table -> put TableRound_02_1 |",
+    );
+    check_beside(
+        &[],
+        "put the banana beside the knife -> take Banana_01_1, put KitchenCounterTop_02_1 | Knife_01_1
+        put the record next to the trophy -> take Record_01_1, put AP_Prop_Desk_Green_1 | Trophy01_1",
+    );
+}
+
+#[test]
+fn what_stands_next_to_a_thing_is_described_by_that() {
+    check_beside(
+        &[],
+        "pick up the mug next to the plate -> take CoffeeMug_Boss_1 | 
+        put the mug next to the plate on the counter -> take CoffeeMug_Boss_1, put KitchenCounterTop_02_1 |",
+    );
+}
+
+#[test]
+fn who_knows_of_fewer_than_were_asked_for_says_so() {
+    let catalog = catalog();
+    let (language, known) = (Language::new(catalog.clone()), scene(&catalog, &[]));
+    let understood = language.understand("put two bowls on the counter", &known, &mut Context::default());
+    assert_eq!(text(&understood, &known), "take Bowl_01_1, put KitchenCounterTop_02_1");
+    let reply = understood.reply();
+    assert!(reply.starts_with("I know of only one bowl: tell me to look for another."), "{reply}");
+}
+
 #[test]
 fn placing() {
     check(
@@ -194,6 +251,7 @@ fn placing() {
         put the laser tip in the laser -> take Laser_Tip_1, put Laser_1
         place the record on the blue desk -> take Record_01_1, put AP_Prop_Desk_Blue_1
         put the banana and the bowl on the counter -> take Banana_01_1, put KitchenCounterTop_02_1, take Bowl_01_1, put KitchenCounterTop_02_1
+        pick up two apples and put them on the counter -> take Apple_1, put KitchenCounterTop_02_1, take Apple_2, put KitchenCounterTop_02_1
         put the cartridge into the printer -> take Printer_Cartridge_Hammer_1, put Printer_3D_1
         put the milk in the bowl -> open FridgeLower_02_1, take MilkCarton_01_1, pour Bowl_01_1
         drop it -> ! I am not holding anything…",
@@ -252,6 +310,8 @@ fn tools_and_eyes() {
         &[],
         "scan the trophy -> scan Trophy01_1
         read the sticky note -> examine StickyNote_1
+        read the yellow paper -> examine StickyNote_1
+        read the little yellow paper -> examine StickyNote_1
         look at the note -> examine StickyNote_1
         inspect the printer -> examine Printer_3D_1
         show me the hammer -> show Hammer_1
@@ -391,6 +451,7 @@ fn what_is_not_understood_is_said() {
         "... -> ! I did not hear anything…
         frobnicate the mug -> ! I do not know the word \"frobnicate\"…
         pick up the flurbl -> ? I do not know what \"flurbl\" is. What does it look like?
+        pick up the banana near the flurbl -> take Banana_01_1
         öffne bitte den Kühlschrank -> ! I do not know the words…
         abre la puerta de la cocina -> ! …
         do not open the fridge -> = All right, I will not do that.
@@ -470,4 +531,26 @@ fn names_and_short_words_are_heard_for_what_sounds_like_them() {
     assert!(asked.starts_with("? ") && asked.ends_with("Shall I?"), "{asked}");
     assert_eq!(talk.say("yes"), "toggle VendingMachine_01_E5_Button");
     assert_eq!(talk.say("press B4"), "toggle VendingMachine_01_B4_Button");
+}
+
+/// In the break room, with a candy bar in the slot that this button empties.
+fn at_the_vending_machine(slot: u8) -> Talk {
+    let mut talk = Talk::new(&["plan OfficeLayout2 BreakRoom"]);
+    talk.language = Box::leak(Box::new(talk.language.clone().without_rewriter()));
+    let machine = talk.scene.objects.iter().find(|object| object.instance == "VendingMachine_01").unwrap().position_m;
+    let candy = talk.scene.objects.iter_mut().find(|object| object.instance == "CandyBar_01").unwrap();
+    let along_m = ((f32::from(slot) + 0.5) / 4.0 - 0.5) * 0.56 - 0.12;
+    candy.position_m = [machine[0] + 0.2, machine[1] + along_m, machine[2] + 1.163];
+    talk
+}
+
+#[test]
+fn what_is_behind_glass_is_brought_out_by_the_button_of_its_slot() {
+    for (slot, button) in [(0, "B4"), (1, "E5"), (2, "E7"), (3, "M8")] {
+        let taken = at_the_vending_machine(slot).say("pick up the candy bar");
+        assert!(taken.starts_with(&format!("toggle VendingMachine_01_{button}_Button")), "{taken}");
+        assert!(taken.ends_with("take CandyBar_01"), "{taken}");
+        let pressed = at_the_vending_machine(slot).say("press the vending machine button for the candy bar");
+        assert_eq!(pressed, format!("toggle VendingMachine_01_{button}_Button"));
+    }
 }

@@ -74,6 +74,17 @@ fn the_one_on_the_floor_is_the_one_that_is_on_nothing() {
 }
 
 #[test]
+fn what_is_meant_instead_of_what_cannot_be_done_is_done() {
+    for meant in [
+        "No, not the whole laser. I mean only the tip, the small silver cone.",
+        "not the laser, I meant the laser tip",
+        "no no, just the tip",
+    ] {
+        check(&[], &format!("> pick up the laser\n! I cannot pick up the laser…\n> {meant}\ntake Laser_Tip_1"));
+    }
+}
+
+#[test]
 fn another_may_do() {
     check(&[], "> pick up the blue apple\n? I do not know of a blue apple. Do you mean…\n> the red one\ntake Apple_1");
     check(
@@ -180,11 +191,51 @@ fn a_failure_is_explained_and_yes_mends_it() {
     assert_eq!(report, "The microwave has no power. Shall I try the lever in the fuse box in the robotics lab?");
     assert_eq!(mended, "toggle FuseBox_01_Lever_1, toggle Microwave_01_1");
 
+    // What the table of actions and devices says that it lacks is put right first, where the robot can.
+    let mut talk = Talk::new(&[]);
+    let detail = "the laser lacks its laser tip: the laser tip has to be put in first";
+    let (report, mended) = fail(&mut talk, "turn on the red computer", Status::ActionExecutionError, detail, "yes");
+    assert_eq!(report, "The laser lacks its laser tip. Shall I put the laser tip in first?");
+    assert_eq!(mended, "take Laser_Tip_1, put Laser_1, toggle V_Monitor_Laser_1");
+
+    let mut talk = Talk::new(&["CoffeeMug_Boss_1 in CoffeeMaker_01_1"]);
+    let detail = "the coffee maker has neither water nor beans: I have to fill it first";
+    let (report, mended) = fail(&mut talk, "turn on the coffee maker", Status::ActionExecutionError, detail, "yes");
+    assert!(report.starts_with("The coffee maker has neither water nor beans. Shall I fill the "), "{report}");
+    let filled = "toggle KitchenCounterSink_01_1, fill KitchenCounterSink_01_1, toggle KitchenCounterSink_01_1";
+    assert_eq!(mended, format!("take CoffeeMug_Boss_1, {filled}, put CoffeeMaker_01_1, toggle CoffeeMaker_01_1"));
+
     let mut talk = Talk::new(&[]);
     let detail = "a chair is in the way: it has to be moved first";
     let (report, answer) = fail(&mut talk, "open the fridge", Status::TargetInaccessible, detail, "no");
     assert_eq!(report, "A chair is in the way. It has to be moved first.");
     assert_eq!(answer, "= All right.");
+}
+
+#[test]
+fn what_a_plan_that_failed_left_on_or_open_is_put_right_and_what_was_asked_for_stays() {
+    let planned = |talk: &mut Talk, said: &str| {
+        let understanding = talk.language.understand(said, &talk.scene, &mut talk.context);
+        let Understanding::Plan { steps, .. } = understanding else { panic!("{understanding:?}") };
+        steps
+    };
+    let mut talk = Talk::new(&[]);
+    let steps = planned(&mut talk, "wash the plate");
+    talk.carry_out(&steps[..2]);
+    talk.context.note_outcome(&steps[2], Status::TargetInaccessible);
+    let right = talk.language.put_right(&talk.scene, &talk.context).unwrap();
+    assert_eq!(right.reply(), "I am turning off the sink again.");
+    let Understanding::Plan { steps: off, .. } = right else { panic!("{right:?}") };
+    talk.carry_out(&off);
+    assert_eq!(talk.language.put_right(&talk.scene, &talk.context), None, "it is off");
+    let washes = "toggle KitchenCounterSink_01_1, clean KitchenCounterSink_01_1, toggle KitchenCounterSink_01_1";
+    assert_eq!(talk.say("do it again"), washes);
+
+    let mut talk = Talk::new(&[]);
+    let steps = planned(&mut talk, "open the fridge and take the milk");
+    talk.carry_out(&steps[..1]);
+    talk.context.note_outcome(&steps[1], Status::TargetInaccessible);
+    assert_eq!(talk.language.put_right(&talk.scene, &talk.context), None);
 }
 
 #[test]
@@ -200,11 +251,22 @@ fn success_is_told() {
         assert_eq!(report, expected, "{}", step_text(last, &talk.scene));
     };
     check("open the fridge", "The fridge is open.");
+    check("put the bowl next to the plate", "Done, it is next to the plate now.");
     check("turn on the time machine", "I have turned on the time machine.");
     check("turn around", "I am done turning around.");
     check("go to the lab 1", "I am in the robotics lab.");
     check("read the note", "It says: \"The bowl must be mended first.\"");
     check("show me the hammer", "This is the hammer on the blue desk in the main office.");
+}
+
+#[test]
+fn what_found_no_room_next_to_a_thing_is_said_to_stand_elsewhere() {
+    let mut talk = Talk::new(&["held Bowl_01_1"]);
+    let understood = talk.language.understand("put it next to the plate", &talk.scene, &mut talk.context);
+    assert!(understood.reply().contains("next to the plate"), "{}", understood.reply());
+    let Understanding::Plan { steps, .. } = understood else { panic!("no plan") };
+    let report = talk.language.report(&steps[0], Status::AlternateNavigationUsed, "", &talk.scene);
+    assert!(report.starts_with("There was no room next to the plate, so it is on "), "{report}");
 }
 
 #[test]
@@ -226,6 +288,9 @@ fn things_are_put_back_and_steps_taken_back() {
     assert_eq!(talk.say("put it back"), "put FridgeLower_02_1");
     std::mem::swap(&mut talk.context, &mut before);
     assert_eq!(talk.say("undo"), "put FridgeLower_02_1, close FridgeLower_02_1");
+    // What it was heated in was on the way.
+    let heated = ["heat the red mug in the microwave", "put it back where you found it first"];
+    crate::support::means(&[], &heated, "put TableRound_02_1");
     check(&[], "> undo\n= There is nothing to undo yet.");
     check(&["held Bowl_01_1"], "> put it back\n! I do not remember where the bowl was…");
     check(
@@ -412,6 +477,16 @@ fn what_flows_is_poured_and_nothing_else() {
 }
 
 #[test]
+fn what_a_machine_does_not_take_is_refused_with_what_it_takes() {
+    let scene = ["plan OfficeLayout1 BreakRoom"];
+    let why = "I cannot toast the loaf of bread: the toaster takes only…";
+    check(&scene, &format!("> toast the loaf of bread\n! {why}\n> why not?\n= {why}"));
+    let mut talk = Talk::new(&scene);
+    let told = talk.say("toast the loaf of bread");
+    assert!(told.ends_with("Tell me to cut it, and I can toast a slice of it."), "{told}");
+}
+
+#[test]
 fn what_is_there_to_be_looked_at_is_not_carried() {
     let scene = ["plan OfficeLayout1 BreakRoom", "add SM_Prop_Papers_01 on TableRound_02"];
     let why = "I cannot pick up the papers: they are there to be looked at, and not made to be carried.";
@@ -528,4 +603,21 @@ fn where_a_thing_is_taken_from_is_the_last_place_that_it_is_put() {
 fn of_several_places_that_fit_it_is_asked_which() {
     let asked = with_tables(&["TableRound_02", "Table_Metal_01"]).say("put it on the table");
     assert!(asked.starts_with("? Which"), "{asked}");
+}
+
+#[test]
+fn what_is_taken_back_in_the_same_breath_is_not_asked_for() {
+    for said in [
+        "Open the fridge, no, leave it.",
+        "Turn on the microwave. Actually, scrap that.",
+        "could you open the fridge? no, no need",
+        "pick up the banana, please, hmm, never mind",
+    ] {
+        assert_eq!(Talk::new(&[]).say(said), "= All right, I leave it as it is.", "{said}");
+    }
+    let marks = &["LightSwitch_01_1 on"];
+    let told = Talk::new(marks).say("any light on in here? if so off, no, leave it. thanks, bye");
+    assert!(!told.contains("toggle") && !told.contains("turning off"), "{told}");
+    let told = Talk::new(&[]).say("Turn on the microwave. Open the fridge, no, leave it.");
+    assert_eq!(told, "toggle Microwave_01_1");
 }

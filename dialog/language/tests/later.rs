@@ -76,6 +76,26 @@ fn what_was_to_come_later_is_left_after_a_failure_a_stop_and_another_request() {
 }
 
 #[test]
+fn what_has_nothing_to_do_with_a_failure_is_done_all_the_same() {
+    let failing = |said: &str| {
+        let mut talk = Talk::new(&[]);
+        let understood = talk.language.understand(said, &talk.scene, &mut talk.context);
+        let Understanding::Plan { steps, .. } = understood else { panic!("{understood:?}") };
+        talk.context.note_outcome(&steps[0], Status::ActionExecutionError);
+        let then = talk.context.awaits_more().then(|| talk.language.carry_on(&talk.scene, &mut talk.context)).flatten();
+        (then, talk)
+    };
+    let (then, mut talk) = failing("turn on the microwave and put the banana on the counter");
+    let then = then.expect("the banana is no matter of the microwave");
+    assert_eq!(text(&then, &talk.scene), "take Banana_01_1, put KitchenCounterTop_02_1");
+    assert!(then.reply().starts_with("I do the rest all the same. OK, picking up the banana"), "{}", then.reply());
+    assert_eq!(talk.say("yes"), "toggle Microwave_01_1", "what failed can be tried again");
+    let (then, talk) = failing("put the banana in the microwave and turn on the sink");
+    assert_eq!(then.map(|then| text(&then, &talk.scene)).as_deref(), Some("toggle KitchenCounterSink_01_1"));
+    assert!(failing("put the banana in the microwave and close it").0.is_none());
+}
+
+#[test]
 fn a_question_after_a_request_is_answered_when_that_is_done() {
     for (said, answer) in [
         ("open the fridge and tell me what's inside", "= In the fridge there is some milk."),
@@ -450,6 +470,28 @@ fn who_wants_to_be_told_when_something_is_so_is_told() {
         let kettle = talk.scene.objects.iter_mut().find(|object| object.instance == "Kettle").expect("a kettle");
         kettle.flags.set(cohabit_cdf::StateFlag::Hot, true);
         assert_eq!(woken(&mut talk, 2.0).as_deref(), Some("= The kettle is hot."), "{said}");
+    }
+}
+
+#[test]
+fn what_is_to_run_until_something_is_so_is_turned_on_first() {
+    let office = ["CoffeeMug_Boss_1 in Microwave_01_1", "CoffeeMug_Boss_1 coffee", "Microwave_01_1 open"];
+    for said in [
+        "close the microwave and let it run until the coffee is hot",
+        "shut the microwave, then leave it on till the coffee is hot",
+        "close the microwave. run it until the coffee is hot",
+    ] {
+        let done = carried_out(&mut Talk::new(&office), said);
+        assert_eq!(done, ["close Microwave_01_1", "toggle Microwave_01_1", "= The coffee is hot."], "{said}");
+    }
+    // What does not go off by itself is turned off then.
+    for said in ["let the sink run for 10 seconds", "keep the sink on for 10 seconds"] {
+        let mut talk = Talk::new(&[]);
+        let done = carried_out(&mut talk, said);
+        let waits = "= I wait for 10 seconds. Then I go on.";
+        assert_eq!(done, ["toggle KitchenCounterSink_01_1", waits], "{said}");
+        assert_eq!(woken(&mut talk, 0.0), None, "{said}");
+        assert_eq!(woken(&mut talk, 10.0).as_deref(), Some("toggle KitchenCounterSink_01_1"), "{said}");
     }
 }
 

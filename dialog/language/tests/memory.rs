@@ -185,7 +185,7 @@ impl Robot {
                 self.world.robot.held = Some(object);
                 self.object(object).parent = None;
             }
-            Action::Place { receptacle } => {
+            Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => {
                 self.go_to(receptacle);
                 let held = self.world.robot.held.take().unwrap();
                 let place = self.world.object(receptacle).unwrap().clone();
@@ -398,6 +398,25 @@ fn what_is_put_somewhere_is_the_same_whether_it_is_picked_up_first() {
     assert!(done.len() > 1 && !said[0].starts_with("I am not sure"), "{done:?} {said:?}");
 }
 
+/// What a rewriter makes of one utterance: a thing is to be found, or taken.
+fn found_or_taken(said: &str, _: &[(bool, String)], _: &str) -> Vec<(String, f32)> {
+    let ways = [("find the hammer", 0.5), ("pick up the hammer", 0.45)];
+    let is_it = said == "whack the whacker down yonder where the boss sits";
+    ways.iter().filter(|_| is_it).map(|(text, share)| ((*text).to_owned(), *share)).collect()
+}
+
+#[test]
+fn what_is_taken_has_to_be_found_first() {
+    let mut robot = Robot::new(&[]);
+    robot.language = robot.language.with_rewriter(found_or_taken);
+    let (done, said) = robot.say("whack the whacker down yonder where the boss sits", 80);
+    assert!(said[0].ends_with("Shall I also pick up the hammer?"), "{said:?}");
+    assert_eq!(done.last().map(String::as_str), Some("go Hammer_1"), "{done:?} {said:?}");
+    assert_eq!(said.last().map(String::as_str), Some("? Shall I also pick up the hammer?"), "{said:?}");
+    let (done, said) = robot.say("yes", 2);
+    assert_eq!(done.last().map(String::as_str), Some("take Hammer_1"), "{said:?}");
+}
+
 #[test]
 fn a_named_room_is_searched_and_no_other() {
     let mut robot = Robot::new(&[]);
@@ -565,7 +584,12 @@ fn it_raises_its_head_again_that_it_lowered_and_lowers_it_for_no_tall_thing() {
 
 #[test]
 fn who_shuts_a_door_on_the_way_out_is_out_then() {
-    for said in ["close the door on your way out", "leave the room and close the door"] {
+    for said in [
+        "close the door on your way out",
+        "leave the room and close the door",
+        "close the door on your way out, I'm going to lunch",
+        "I have to run. Shut the door on your way out!",
+    ] {
         let mut robot = Robot::new(&["Door_01_1 open"]);
         robot.look(true);
         let (done, replies) = robot.say(said, 3);
@@ -634,6 +658,22 @@ fn what_it_has_opened_it_has_looked_into() {
 }
 
 #[test]
+fn what_a_machine_did_behind_its_door_is_told_by_what_such_machines_do() {
+    let mut robot = Robot::new(&["CoffeeMug_Boss_1 coffee"]);
+    robot.say("put the red mug in the microwave and close it", 8);
+    let told = |robot: &mut Robot| robot.say("is the coffee hot?", 1).1.join(" ");
+    let before = told(&mut robot);
+    assert!(before.starts_with("= No, "), "{before}");
+    robot.say("turn on the microwave", 2);
+    let after = told(&mut robot);
+    assert!(after.starts_with("= Yes, the ") && after.contains("should be hot by now: the microwave"), "{after}");
+    // What it sees counts more.
+    robot.say("open the microwave", 1);
+    let seen = told(&mut robot);
+    assert!(!seen.contains("should be hot"), "{seen}");
+}
+
+#[test]
 fn what_it_has_not_looked_into_may_not_be_empty() {
     let mut robot = Robot::new(&[]);
     robot.look(true);
@@ -643,6 +683,16 @@ fn what_it_has_not_looked_into_may_not_be_empty() {
     assert!(done.contains(&"open FridgeLower_02_1".to_owned()), "{done:?}");
     let (_, said) = robot.say("is the fridge empty?", 1);
     assert_eq!(said, ["= No, the fridge is not empty."]);
+}
+
+#[test]
+fn of_two_things_that_it_has_not_seen_it_looks_for_both() {
+    let mut robot = Robot::new(&[]);
+    let (_, said) = robot.say("where are the milk and the hammer?", 1);
+    assert_eq!(said, ["? I have not seen any milk or a hammer yet. Shall I look for them?"]);
+    let (done, _) = robot.say("yes", 150);
+    let finds = |instance: &str| done.iter().any(|step| *step == format!("go {instance}"));
+    assert!(finds("MilkCarton_01_1") && finds("Hammer_1"), "{done:?}");
 }
 
 #[test]

@@ -153,7 +153,7 @@ impl Played<'_> {
                 self.scene.robot.held = Some(id);
                 object(&mut self.scene, id).unwrap().parent = None;
             }
-            Action::Place { receptacle } => {
+            Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => {
                 self.walk(receptacle);
                 if let Some(held) = self.scene.robot.held.take() {
                     let place = self.scene.object(receptacle).unwrap().clone();

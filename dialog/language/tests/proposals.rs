@@ -12,6 +12,14 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
         "sing that dinner plate a merry tune tonight",
         &[("pick up the plate", 0.5), ("open the microwave; pick up the plate", 0.45)],
     ),
+    (
+        "sing the banana gently onto the green desk tonight",
+        &[
+            ("put the banana on the green desk", 0.35),
+            ("put the banana on the red desk", 0.3),
+            ("put the banana on the toaster", 0.2),
+        ],
+    ),
     ("sing that plate a merry tune tonight", &[("pick up the plate", 0.1), ("turn on the toaster", 0.1)]),
     ("the plate, sing it a merry tune, I said", &[("pick up the plate", 0.15), ("turn on the toaster", 0.05)]),
     ("sing me a merry tune of fridges tonight", &[("is the fridge open?; turn on the microwave", 0.2)]),
@@ -50,6 +58,14 @@ const WRITTEN: &[(&str, &[(&str, f32)])] = &[
     ),
     ("sing my plate a merry tune tonight", &[("pick up the plate", 0.19)]),
     ("oh, I meant sing my plate a merry tune tonight", &[("pick up the plate", 0.19)]),
+    ("what is that machine by the wall, the big one? it looks scary", &[("pick up the plate", 0.9)]),
+    ("sing me the trophy and the plate tonight", &[("go to the plate", 0.9)]),
+    (
+        "sing that bowl a merry tune back where it was",
+        &[("put the bowl on the counter", 0.6), ("put the bowl on the green desk", 0.35)],
+    ),
+    ("sing my dinner plate a merry tune tonight", &[("go to the plate", 0.5), ("pick up the plate", 0.45)]),
+    ("sing two apples onto that counter tonight", &[("pick up the apple; put the apple on the counter", 0.95)]),
     ("make the bowl cold now please", &[("pick up the bowl", 0.95)]),
     ("what is on the round table?", &[("pick up the bowl", 0.95)]),
 ];
@@ -75,6 +91,38 @@ fn what_all_readings_begin_with_is_done() {
     let Understanding::Plan { steps, reply } = understanding else { panic!("{understanding:?}") };
     assert_eq!(steps.len(), 1, "{reply}");
     assert!(reply.starts_with("OK, opening the microwave. Shall I also pick up the bowl and then put"), "{reply}");
+}
+
+#[test]
+fn what_goes_back_goes_to_where_it_was_taken_from_and_to_no_place_that_nobody_spoke_of() {
+    let mut talk = talk();
+    talk.say_and_do("pick up the bowl");
+    let done = talk.say("sing that bowl a merry tune back where it was");
+    assert!(done == "put TableRound_02_1" || done.contains("putting the bowl on the round table. Shall I?"), "{done}");
+}
+
+#[test]
+fn who_takes_a_thing_goes_to_it_first() {
+    let mut talk = talk();
+    let understanding =
+        talk.language.understand("sing my dinner plate a merry tune tonight", &talk.scene, &mut talk.context);
+    let Understanding::Plan { steps, reply } = understanding else { panic!("{understanding:?}") };
+    assert!(reply.starts_with("OK, going to the plate. Shall I also pick up the plate?"), "{reply}");
+    talk.carry_out(&steps);
+    assert_eq!(talk.say("yes please"), "take FoodPlate_01_1");
+}
+
+#[test]
+fn as_many_are_meant_as_were_said() {
+    let told = talk().say("sing two apples onto that counter tonight");
+    let (taken, asked) = (told.matches("take Apple").count(), told.matches("picking up").count());
+    assert!(taken == 2 || asked == 2, "{told}");
+}
+
+#[test]
+fn who_asked_for_things_is_not_served_with_a_walk_to_one_of_them() {
+    let told = talk().say("sing me the trophy and the plate tonight");
+    assert!(!told.starts_with("go "), "{told}");
 }
 
 #[test]
@@ -163,6 +211,26 @@ fn an_answer_may_come_after_a_remark_and_who_asks_back_chooses_nothing() {
 }
 
 #[test]
+fn a_question_of_their_own_chooses_none_of_what_the_robot_asked_about() {
+    for asked in [
+        "Tell me, what is the toaster?",
+        "By the way, what is in the toaster, the silver one?",
+        "what is that machine by the wall, the big one? it looks scary",
+    ] {
+        let mut talk = talk();
+        talk.say("sing that plate a merry tune tonight");
+        let told = talk.say(asked);
+        assert!(!told.contains("toggle") && !told.starts_with("take"), "{asked}: {told}");
+    }
+    for answer in ["How about the toaster?", "Is it far? The second one, please.", "hmm, the toaster?"] {
+        let mut talk = talk();
+        talk.say("sing that plate a merry tune tonight");
+        let done = talk.say(answer);
+        assert!(done.contains("toggle Toaster_02"), "{answer}: {done}");
+    }
+}
+
+#[test]
 fn what_was_asked_beside_an_order_is_answered_though_the_order_is_asked_about() {
     let asked = talk().say("sing me a merry tune of fridges tonight");
     assert!(
@@ -172,11 +240,39 @@ fn what_was_asked_beside_an_order_is_answered_though_the_order_is_asked_about() 
 }
 
 #[test]
+fn a_yes_before_something_else_chooses_none_of_several() {
+    let asked = || {
+        let mut talk = talk();
+        talk.say("sing that plate a merry tune tonight");
+        talk
+    };
+    for other in ["Fine, I should eat something healthy anyway. Open the fridge.", "All right, open the fridge then."] {
+        let done = asked().say(other);
+        assert!(!done.contains("take FoodPlate_01") && !done.contains("toggle"), "{other}: {done}");
+    }
+    for answer in ["Yes, the second one.", "Fine, the toaster."] {
+        let done = asked().say(answer);
+        assert!(done.contains("toggle Toaster_02"), "{answer}: {done}");
+    }
+    // To what is asked about alone it agrees.
+    let mut talk = talk();
+    talk.say("sing my plate a merry tune tonight");
+    let done = talk.say("Fine. Then open the fridge.");
+    assert!(done.starts_with("take FoodPlate_01"), "{done}");
+}
+
+#[test]
 fn what_meets_a_goal_of_the_mission_is_likelier_meant() {
     let done = talk().say("sing our bowl a happier tune tonight");
     assert!(done.contains("pour"), "{done}");
     let asked = talk().say("sing our plate a happier tune tonight");
     assert!(asked.starts_with("? "), "{asked}");
+}
+
+#[test]
+fn where_the_place_was_named_no_other_one_is_asked_about() {
+    let done = talk().say("sing the banana gently onto the green desk tonight");
+    assert!(done.starts_with("take Banana_01_1") && done.contains("AP_Prop_Desk_Green_1"), "{done}");
 }
 
 #[test]
@@ -217,6 +313,16 @@ fn what_was_only_understood_is_not_called_asked_for() {
     let _ = talk.say_and_do("sing those fridges one merry tune tonight");
     let why = talk.say("why did you open the fridge?");
     assert!(why.contains("since I understood that I should open the fridge"), "{why}");
+}
+
+#[test]
+fn of_what_was_perhaps_not_meant_it_is_sorry_and_offers_to_undo_it() {
+    let mut talk = talk();
+    talk.scene.goals.clear();
+    let _ = talk.say_and_do("sing those fridges one merry tune tonight");
+    let why = talk.say("why did you open the fridge?");
+    assert!(why.ends_with("I am sorry if that is not what you meant. Shall I undo it?"), "{why}");
+    assert_eq!(talk.say("yes"), "close FridgeLower_02_1");
 }
 
 #[test]

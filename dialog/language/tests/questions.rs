@@ -114,6 +114,25 @@ fn why_is_answered_of_what_was_asked_about() {
 }
 
 #[test]
+fn why_a_step_was_done_is_what_it_was_needed_for_and_then_what_was_asked_for() {
+    const MENDS: &str = "repair the bowl in the time machine";
+    check(
+        &[MENDS, "why did you close the time machine?"],
+        "I closed the time machine, since it has to be closed before it runs…",
+    );
+    let opened = replied(&[], &[MENDS, "why did you open the time machine?"]);
+    assert!(opened.contains("since it had to be open for "), "{opened}");
+    check(
+        &["turn on the freeze ray", "why did you turn on the blue computer?"],
+        "I turned on the blue computer, since the freeze ray has no switch of its own…",
+    );
+    check(
+        &["put the banana on the counter", "why did you pick up the banana?"],
+        "I picked up the banana, since I needed it in my hand for putting the banana on the counter top. You asked…",
+    );
+}
+
+#[test]
 fn where_a_thing_was_is_told_though_it_was_moved() {
     let found = ["pick up the hammer", "where was it when you found it?"];
     check(&found, "I took the hammer from the blue desk…");
@@ -137,6 +156,36 @@ fn what_it_said_is_said_again() {
 }
 
 #[test]
+fn what_is_asked_by_itself_is_answered_whatever_is_said_around_it() {
+    for asked in ["Ooh, so this is the robotics lab! What else is in here?", "What a mess. What can you see?"] {
+        let mut talk = Talk::new(&["at Lab1 10 8"]);
+        talk.say_and_do("pick up the laser tip and put it on the blue shelf");
+        let told = talk.say(asked);
+        assert!(told.starts_with("= I see "), "{asked} {told}");
+    }
+    let asked = "So what have you done for me so far this morning? You are so clever.";
+    check(&["pick up the banana", asked], "So far I picked up the banana.");
+}
+
+#[test]
+fn goals_are_told_of_what_it_did_and_not_of_what_was_so_before() {
+    let mut talk = Talk::new(&[]);
+    talk.say_and_do("pick up the banana");
+    talk.scene.goals[1].met = true;
+    let told = talk.say("what have you done so far?");
+    assert_eq!(told, "= So far I picked up the banana. That did what the mission wants: Pour milk into the bowl.");
+}
+
+#[test]
+fn what_is_in_a_thing_is_told_where_it_is_asked_whether_it_is_empty() {
+    let coffee = ["CoffeeMug_Boss_1 coffee"];
+    let told = |said: &str| replied(&coffee, &[said]);
+    assert_eq!(told("is the red mug empty?"), "No, there is coffee in the red mug.");
+    assert_eq!(told("is the red mug full?"), "Yes, there is coffee in the red mug.");
+    assert_eq!(told("is the yellow mug empty?"), "Yes, the yellow mug is empty.");
+}
+
+#[test]
 fn what_else_it_did_is_no_question_about_goals() {
     check(&["pick up the banana", "put it on the counter", "what else did you do?"], "So far I picked up the …");
     check(&["what else did you do?"], "I have done nothing yet.");
@@ -151,6 +200,61 @@ fn what_works_a_machine_is_told() {
     check(&["turn on the computer that controls the freeze ray"], "OK, turning on the blue computer.");
     // What works nothing may be for anything.
     check(&["where is the tip for the laser?"], "The laser tip is …");
+}
+
+#[test]
+fn what_is_before_a_machine_is_what_it_aims_at() {
+    let scene = ["Banana_01_1 in AP_Prop_Shelf_Wall_Laser_1"];
+    for asked in ["what is in front of the laser?", "what does the laser point at?", "where is the laser pointing?"] {
+        let told = replied(&scene, &[asked]);
+        assert!(told.starts_with("The laser aims at the ") && told.contains("banana"), "{asked} {told}");
+    }
+    let told = replied(&[], &["what is in front of you?"]);
+    assert!(told.starts_with("I see "), "{told}");
+}
+
+#[test]
+fn the_lab_that_is_asked_about_is_the_one_in_which_something_was_done_last() {
+    check(&["is the light in the lab still on?"], "Which lab do you mean…");
+    let asked = ["turn off the light switch in the quantum lab", "is the light in the lab still on?"];
+    let told = replied(&["LightSwitch_01_2 on"], &asked);
+    assert!(told.starts_with("No, the light switch"), "{told}");
+}
+
+#[test]
+fn what_a_machine_does_is_told_with_what_works_it() {
+    let freezes = "The freeze ray fires a beam that freezes what stands on the blue shelf before it. \
+                   It has no switch of its own: the blue computer works it.";
+    for asked in ["what does the freeze ray do?", "how is the freeze ray switched on?", "what turns the freeze ray on?"]
+    {
+        check(&[asked], freezes);
+    }
+    let told = replied(&[], &["what is the freeze ray doing?"]);
+    assert!(told.starts_with("I do not know that. What I know: ") && told.contains("fires a beam"), "{told}");
+    check(&["what is the freeze ray for?", "how do people switch it on?"], "By turning on the blue computer…");
+}
+
+#[test]
+fn what_a_kind_of_thing_is_is_known_before_one_was_seen() {
+    for asked in ["What's a freeze ray, and where do they keep it?", "what is a freeze ray and where is it?"] {
+        let told = replied(&["without FreezeRay_1"], &[asked]);
+        let kind = "A freeze ray fires a beam that freezes what stands on the blue shelf before it. I have not seen";
+        assert!(told.starts_with(kind), "{asked} {told}");
+    }
+}
+
+#[test]
+fn why_something_is_done_so_orders_nothing() {
+    for asked in [
+        "Hooray! Why do you need to use a computer for it, couldn't you just press a button on the laser itself?",
+        "why did you need the blue computer, could you not press a button?",
+        "Oh well, why not? There is a toaster right next to it.",
+    ] {
+        let mut talk = Talk::new(&[]);
+        talk.say_and_do("turn on the freeze ray");
+        let understanding = talk.language.understand(asked, &talk.scene, &mut talk.context);
+        assert!(matches!(understanding, Understanding::Answer { .. }), "{asked} {understanding:?}");
+    }
 }
 
 #[test]
@@ -258,6 +362,9 @@ fn what_may_be_warmer_than_it_was_is_looked_at_first() {
     let Understanding::Plan { steps, reply } = looks else { panic!("{looks:?}") };
     assert!(reply.contains("looking at the bowl"), "{reply}");
     talk.carry_out(&steps);
+    // That there is nothing to read on it is news to who wanted it to be looked at alone.
+    let is_told = |context| talk.language.is_worth_telling(&steps[0], &talk.scene, context);
+    assert!(!is_told(&talk.context) && is_told(&cohabit_language::Context::default()));
     hidden(&mut talk, true);
     let answer = talk.language.carry_on(&talk.scene, &mut talk.context).unwrap();
     assert_eq!(answer.reply(), "No, the bowl is not hot.");

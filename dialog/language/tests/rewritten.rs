@@ -28,6 +28,18 @@ fn remarks_and_reasons_are_passed_over() {
 }
 
 #[test]
+fn what_has_another_colour_than_was_said_is_not_meant() {
+    let fruit = ["plan OfficeLayout2 BreakRoom", "add Apple on TableRound_02", "add Banana_01 on TableRound_02"];
+    for said in [
+        "Ah, ok. Then go to the break room and put the yellow fruit in the white upper part of fridge, where is the ice",
+        "There lies a yellow fruit on the table. Put it in the cold box, please.",
+    ] {
+        let found = Talk::new(&fruit).say(said).to_lowercase();
+        assert!(!found.contains("apple"), "{said}: {found}");
+    }
+}
+
+#[test]
 fn what_was_done_before_is_referred_to() {
     means(
         BREAK_ROOM,

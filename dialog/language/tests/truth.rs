@@ -264,11 +264,17 @@ const LAB: [&str; 2] = ["plan OfficeLayout1 Lab1", "add CanSodaNew_01 on Desk_01
 fn what_a_machine_lacks_is_told() {
     let mut talk = Talk::new(&LAB);
     assert_eq!(talk.say("is the laser assembled?"), "= Yes, I see nothing wrong with the laser.");
+    assert_eq!(talk.say("is the laser complete now?"), "= Yes, the laser is complete: nothing is missing in it.");
     talk.scene.objects.retain(|object| !matches!(object.instance.as_str(), "Laser_Tip" | "Laser_ControlPanel"));
     let lacks = "t lacks its laser tip and it lacks its control panel.";
-    for said in
-        ["what is missing from the laser?", "what is wrong with the laser?", "are any parts missing on the laser?"]
-    {
+    let complete = talk.say("is the laser complete now?");
+    assert_eq!(complete, "= No, the laser is not complete: it lacks its laser tip and its control panel.");
+    for said in [
+        "what is missing from the laser?",
+        "what is wrong with the laser?",
+        "are any parts missing on the laser?",
+        "is anything still missing in the laser?",
+    ] {
         assert_eq!(talk.say(said), format!("= I{lacks}"), "{said}");
     }
     assert_eq!(talk.say("is the laser assembled?"), format!("= No, there is something wrong with the laser: i{lacks}"));

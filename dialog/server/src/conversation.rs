@@ -4,9 +4,12 @@
 
 mod alone;
 mod face;
+mod following;
 mod hearing;
 mod held;
+mod insight;
 mod interception;
+mod manner;
 mod outbox;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -25,6 +28,8 @@ use crate::{
 pub(crate) use hearing::{Aloud, Thought};
 use hearing::{Puzzle, Words};
 use held::Held;
+pub use insight::Insight;
+pub use manner::{Manner, Politeness, Verbosity};
 pub(crate) use outbox::line_message;
 pub use outbox::{Outgoing, TurnEnd};
 
@@ -37,6 +42,8 @@ pub struct Conversation {
     consulting: Consulting,
     /// What is held back.
     holding: Holding,
+    /// How it words what it says.
+    manner: Manner,
     /// Whether its mind acts on its own, whatever it is told.
     is_alone: bool,
 }
@@ -82,11 +89,14 @@ struct Plan {
     /// Whether a wizard ordered it: people are told nothing of it.
     #[serde(default)]
     is_silent: bool,
+    /// Whether its turn was over before it: nothing more is told of it.
+    #[serde(default)]
+    is_after_turn: bool,
 }
 
 impl Plan {
     fn new(turn: u64, steps: Vec<Step>) -> Self {
-        Self { turn, steps, told_end: false, missing: None, is_silent: false }
+        Self { turn, steps, told_end: false, missing: None, is_silent: false, is_after_turn: false }
     }
 }
 
@@ -134,6 +144,7 @@ impl Conversation {
             memory: Memory::default(),
             consulting: Consulting::Never,
             holding: Holding::default(),
+            manner: Manner::default(),
             is_alone: false,
         }
     }
@@ -164,7 +175,7 @@ impl Conversation {
     }
 
     /// Its next turn comes after those so far, which may have been of others.
-    pub(crate) fn count_from(&mut self, turns: u64) {
+    pub fn count_from(&mut self, turns: u64) {
         self.memory.turns = self.memory.turns.max(turns);
     }
 
@@ -218,7 +229,7 @@ impl Conversation {
     ) {
         self.memory.asked = None;
         self.express(turn, face::shown_with(&understanding), outbox);
-        match understanding {
+        match self.manner.worded(understanding) {
             Understanding::Plan { steps, reply } => {
                 self.say(turn, LineKind::Say, &reply, outbox);
                 let (steps, missing) = to_where_it_was(steps, knowledge);
@@ -278,89 +289,6 @@ impl Conversation {
         }
     }
 
-    /// The agent told something about a plan.
-    pub fn follow(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Outgoing> {
-        let is_silent = self.is_silent(header.turn);
-        let mut outbox = self.follow_plan(header, knowledge);
-        if is_silent {
-            outbox = self.unsaid(header.turn, outbox);
-        }
-        if matches!(header.kind(), Some(DialogKind::StepEnded | DialogKind::PlanEnded)) {
-            self.propose_again(knowledge, &mut outbox);
-        }
-        outbox
-    }
-
-    fn follow_plan(&mut self, header: &DialogHeader, knowledge: &mut Knowledge) -> Vec<Outgoing> {
-        let mut outbox = Vec::new();
-        let number = header.turn;
-        let (Some(kind), Some(plan)) = (header.kind(), self.memory.plans.get_mut(&number)) else { return outbox };
-        let turn = plan.turn;
-        let count = plan.steps.len();
-        let step = plan.steps.get(header.step as usize).cloned();
-        match kind {
-            DialogKind::StepStarted => {
-                if let Some(step) = step.filter(|step| !step.says.is_empty()) {
-                    outbox.push(Outgoing::Progress { turn, step: header.step, steps: count, says: step.says });
-                }
-            }
-            DialogKind::StepEnded => {
-                let (Some(step), Some(status)) = (step, header.status()) else { return outbox };
-                self.memory.context.note_outcome(&step, status);
-                let whole = status.is_success() && header.step as usize + 1 == count;
-                let failed = status.is_failure();
-                let is_worth_telling = (whole && worth_telling(&step)) || failed;
-                let is_worth_telling =
-                    is_worth_telling && plan.missing.is_none() && !self.memory.context.is_searching();
-                if is_worth_telling && !plan.told_end {
-                    plan.told_end = true;
-                    if let Some(known) = knowledge.known() {
-                        let text = self.language.report(&step, status, header.text.as_str(), &known);
-                        let line = if failed { LineKind::Problem } else { LineKind::Say };
-                        self.say(turn, line, &text, &mut outbox);
-                    }
-                }
-            }
-            DialogKind::PlanEnded => {
-                let (told, missing, is_silent) = (plan.told_end, plan.missing, plan.is_silent);
-                self.memory.plans.remove(&number);
-                let status = header.status().unwrap_or(Status::ActionExecutionError);
-                if status.is_success() && missing.is_some_and(|id| self.miss(turn, id, knowledge, &mut outbox)) {
-                    return outbox;
-                }
-                if goes_on(status) && self.carry_on(turn, knowledge, &mut outbox) {
-                    return outbox;
-                }
-                if !told && status.is_failure() {
-                    self.say(turn, LineKind::Problem, "That did not work.", &mut outbox);
-                }
-                let end = match status {
-                    Status::Interrupted => TurnEnd::Interrupted,
-                    status if status.is_success() => TurnEnd::Done,
-                    _ => TurnEnd::Failed,
-                };
-                if end == TurnEnd::Failed && !is_silent {
-                    self.express(turn, FacialExpression::Sorry, &mut outbox);
-                }
-                outbox.push(Outgoing::TurnEnded { turn, end });
-            }
-            _ => {}
-        }
-        outbox
-    }
-
-    /// Goes on with a search after one of its plans; tells whether there was more to do.
-    fn carry_on(&mut self, turn: u64, knowledge: &Knowledge, outbox: &mut Vec<Outgoing>) -> bool {
-        if !self.memory.context.awaits_more() {
-            return false;
-        }
-        let Some(known) = knowledge.known() else { return false };
-        let Some(understanding) = self.language.carry_on(&known, &mut self.memory.context) else { return false };
-        self.memory.turns += 1;
-        self.react(turn, self.memory.turns, understanding, knowledge, outbox);
-        true
-    }
-
     /// Whether something was put off that [`Self::wake`] goes on with.
     #[must_use]
     pub const fn awaits(&self) -> bool {
@@ -379,15 +307,6 @@ impl Conversation {
             self.propose_again(knowledge, &mut outbox);
         }
         outbox
-    }
-
-    /// Says that a thing is not where it was, and forgets that it is there; asks whether to look for it.
-    fn miss(&mut self, turn: u64, id: ObjectId, knowledge: &mut Knowledge, outbox: &mut Vec<Outgoing>) -> bool {
-        let Some(known) = knowledge.known() else { return false };
-        let question = self.language.report_missing(id, &known, &mut self.memory.context);
-        knowledge.forget(id);
-        self.react(turn, turn, question, knowledge, outbox);
-        true
     }
 
     fn plan(&mut self, number: u64, plan: Plan, outbox: &mut Vec<Outgoing>) {
@@ -471,16 +390,6 @@ fn to_where_it_was(mut steps: Vec<Step>, knowledge: &Knowledge) -> (Vec<Step>, O
     steps.truncate(at);
     steps.push(Step { action: Action::GoTo { target: GoToTarget::Point(place) }, says });
     (steps, Some(id))
-}
-
-/// Whether a plan that ended so may be followed by more.
-const fn goes_on(status: Status) -> bool {
-    !matches!(status, Status::Interrupted | Status::KilledByHazard)
-}
-
-/// Whether the end of a plan whose last step is this is told; that it stopped or pointed was told before.
-fn worth_telling(step: &Step) -> bool {
-    !matches!(step.action, Action::Stop | Action::Highlight { .. }) && !step.says.is_empty()
 }
 
 #[cfg(test)]

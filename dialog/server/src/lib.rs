@@ -59,12 +59,13 @@ use std::{
 };
 
 use cohabit_bus::{BusError, Pauses, Transport, message::CameraRecord};
-use cohabit_cdf::{Catalog, Layout, Mission};
+use cohabit_cdf::{Catalog, Layout, Mission, catalog::Speech};
+use cohabit_language::Rewrite;
 use serde_json::{Value, json};
 
 pub use cohabit_language::{Asking, Consulting, Effort, Interpreter, Knows, Language};
 pub use cohabit_speech::VoiceSettings;
-pub use conversation::{Asked, Conversation, Outgoing, TurnEnd};
+pub use conversation::{Asked, Conversation, Insight, Manner, Outgoing, Politeness, TurnEnd, Verbosity};
 pub use driving::{Drivable, NotDrivable};
 pub use expression::FacialExpression;
 pub use frames::encode_jpeg;
@@ -124,6 +125,8 @@ pub struct DialogConfig {
     pub knows: Knows,
     /// When it asks.
     pub asking: Asking,
+    /// How it words what it says.
+    pub manner: Manner,
     /// How much work goes into what people say.
     pub effort: Effort,
     /// Who else says what people mean, if anybody.
@@ -178,10 +181,19 @@ const STATE_EVERY: Duration = Duration::from_millis(100);
 /// The robot's language.
 #[must_use]
 pub fn language(catalog: Arc<Catalog>, effort: Effort) -> Language {
+    let rewriter = rewriter(&catalog);
     let language = Language::new(catalog);
     match effort {
         Effort::Fast => language,
-        Effort::Full => language.with_rewriter(cohabit_rewriter::rewrite),
+        Effort::Full => language.with_rewriter(rewriter),
+    }
+}
+
+/// The rewriter that is fitted to how people speak in this world.
+fn rewriter(catalog: &Catalog) -> Rewrite {
+    match catalog.speech() {
+        Speech::Office => cohabit_rewriter::rewrite,
+        Speech::Household => cohabit_rewriter::rewrite_at_home,
     }
 }
 
@@ -235,12 +247,14 @@ pub fn serve(
     let (listener, place) = listen(config.listen, config.seats, journal.past().place.as_ref())?;
     if config.effort == Effort::Full {
         // It takes some tenths of a second to load: who speaks first need not wait for that.
-        std::thread::spawn(cohabit_rewriter::builtin);
+        let rewriter = rewriter(&catalog);
+        std::thread::spawn(move || rewriter("", &[], ""));
     }
     let language = language(Arc::clone(&catalog), config.effort).asking(config.asking);
     let consulting = if config.interpreter.is_some() { config.consulting } else { Consulting::Never };
     let robots = Robots::new(&robots, config.knows, &language, &catalog, &layout, told, consulting)
         .holding(&config.holding)
+        .speaking(config.manner)
         .on_their_own(&config.on_their_own)
         .with_mission(&mission.goal_text);
     let (puzzles, asked) = config.interpreter.is_some().then(interpreter::puzzles).unzip();

@@ -17,16 +17,22 @@ use serde::{Deserialize, Serialize, de::IgnoredAny};
 use crate::{limits::LONGEST_TEXT_CHARS, text};
 
 /// Those that ship, by name.
-const BUILT_IN: [(&str, &str); 8] = [
+const BUILT_IN: [(&str, &str); 7] = [
     ("sus", include_str!("../data/questionnaires/sus.toml")),
     ("tlx", include_str!("../data/questionnaires/tlx.toml")),
     ("tlx_weighted", include_str!("../data/questionnaires/tlx_weighted.toml")),
-    ("godspeed", include_str!("../data/questionnaires/godspeed.toml")),
     ("rosas", include_str!("../data/questionnaires/rosas.toml")),
     ("trust", include_str!("../data/questionnaires/trust.toml")),
     ("ueq_s", include_str!("../data/questionnaires/ueq_s.toml")),
     ("pssuq", include_str!("../data/questionnaires/pssuq.toml")),
 ];
+
+/// Those that do not ship, since not everybody may pass them on, and what to do about it.
+const NOT_SHIPPED: [(&str, &str); 1] = [(
+    "godspeed",
+    "Godspeed (Bartneck and others 2009) does not ship: its paper is under a licence for noncommercial use alone. Where that covers your \
+     study, write its items into a file of your own, and name that",
+)];
 
 /// The most questions of one, the most places of a scale, and the most that can be chosen from.
 const MOST_ITEMS: usize = 100;
@@ -178,6 +184,9 @@ impl Questionnaire {
         let failed = |reason| QuestionnaireError { file: name.to_owned(), reason };
         let path = Path::new(name);
         let text = fs::read_to_string(path).map_err(|error| {
+            if let Some((_, why)) = NOT_SHIPPED.iter().find(|(known, _)| *known == name) {
+                return failed((*why).to_owned());
+            }
             let known: Vec<_> = BUILT_IN.iter().map(|(known, _)| *known).collect();
             failed(format!("{error}; name a file, or one of those that ship: {}", known.join(", ")))
         })?;
@@ -372,7 +381,7 @@ mod tests {
     #[test]
     fn those_that_ship_can_be_asked() {
         let items = BUILT_IN.map(|(name, _)| Questionnaire::find(name).map(|found| found.items.len()));
-        assert_eq!(items, [10, 6, 21, 24, 18, 12, 8, 16].map(Ok));
+        assert_eq!(items, [10, 6, 21, 18, 12, 8, 16].map(Ok));
     }
 
     #[test]
@@ -395,6 +404,8 @@ mod tests {
         }
         let error = Questionnaire::find("nowhere.toml").expect_err("there is none").to_string();
         assert!(error.starts_with("nowhere.toml: ") && error.contains("sus, tlx"), "{error}");
+        let error = Questionnaire::find("godspeed").expect_err("it does not ship").to_string();
+        assert!(error.contains("noncommercial use alone") && error.contains("a file of your own"), "{error}");
     }
 
     #[test]

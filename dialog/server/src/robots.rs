@@ -10,7 +10,7 @@ use cohabit_cdf::{BodyId, Catalog, Layout, ObjectId};
 use cohabit_language::{Addressed, Consulting, Knows, Language, Lessons, Roster, find_stop};
 
 use crate::{
-    conversation::{Conversation, Memory, Thought},
+    conversation::{Conversation, Manner, Memory, Thought},
     known::Knowledge,
     page::RobotName,
     wizard::Holding,
@@ -114,6 +114,13 @@ impl Robots {
     pub fn holding(mut self, holding: &Holding) -> Self {
         let held = |robot: Robot| Robot { conversation: robot.conversation.holding(holding.clone()), ..robot };
         self.robots = self.robots.into_iter().map(held).collect();
+        self
+    }
+
+    /// The same, with what they say worded so.
+    pub fn speaking(mut self, manner: Manner) -> Self {
+        let worded = |robot: Robot| Robot { conversation: robot.conversation.speaking(manner), ..robot };
+        self.robots = self.robots.into_iter().map(worded).collect();
         self
     }
 

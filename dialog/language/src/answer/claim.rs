@@ -25,6 +25,8 @@ pub(crate) enum Claim<'q> {
     Sound(bool),
     /// It has come to its end: `the microwave is done`, `the coffee is ready`.
     Done,
+    /// It is where it was before it was taken.
+    Back,
     /// It works something, or is needed for it.
     For,
     /// The first is what the second names: `the red thing the laser tip`.
@@ -90,6 +92,9 @@ impl<'q> Claim<'q> {
         let said = &lexicon.yes_no;
         if said.says_done(words) {
             return Self::Done;
+        }
+        if said.says_back(words) {
+            return Self::Back;
         }
         if let Some(is_sound) = said.soundness(words) {
             return Self::Sound(is_sound);
@@ -164,16 +169,30 @@ pub(crate) fn is_about_presence(lexicon: &Lexicon, words: &[String], phrase: &Ph
     words.iter().all(|word| is_spare(word) || named.contains(&word.as_str()))
 }
 
+/// What stands between two states of which one is asked for.
+const OR: &str = "or";
+
+/// The two states of which one is asked for, with the words for each: `the wardrobe open or shut now`.
+pub(crate) fn asked_either<'w>(lexicon: &Lexicon, words: &'w [String]) -> Option<[(StateWord, &'w [String]); 2]> {
+    let at = words.iter().position(|word| word == OR)?;
+    let (before, after) = (&words[..at], &words[at + 1..]);
+    let first = asked_state(lexicon, before).filter(|(_, said)| before.ends_with(said))?;
+    let (length, second) = state_at_start(lexicon, after)?;
+    lexicon.yes_no.is_filler(&after[length..]).then_some([first, (second, &after[..length])])
+}
+
+/// The state that words begin with, and how many of them say it.
+fn state_at_start(lexicon: &Lexicon, words: &[String]) -> Option<(usize, StateWord)> {
+    let on_or_off = match words.first()?.as_str() {
+        "on" => Some((1, StateWord::Flag(StateFlag::Toggled, true))),
+        "off" => Some((1, StateWord::Flag(StateFlag::Toggled, false))),
+        _ => None,
+    };
+    lexicon.states.longest(words).map(|(length, state)| (length, *state)).or(on_or_off)
+}
+
 /// The state that a question asks for, which is named after what it asks about: `the fridge open right now`; and its words.
 pub(crate) fn asked_state<'w>(lexicon: &Lexicon, words: &'w [String]) -> Option<(StateWord, &'w [String])> {
-    let named = |at: usize| {
-        let on_or_off = match words[at].as_str() {
-            "on" => Some((1, StateWord::Flag(StateFlag::Toggled, true))),
-            "off" => Some((1, StateWord::Flag(StateFlag::Toggled, false))),
-            _ => None,
-        };
-        lexicon.states.longest(&words[at..]).map(|(length, state)| (length, *state)).or(on_or_off)
-    };
     let names =
         |at: usize| lexicon.classes.longest(&words[at..]).is_some() || lexicon.rooms.longest(&words[at..]).is_some();
     // `on it`
@@ -182,7 +201,7 @@ pub(crate) fn asked_state<'w>(lexicon: &Lexicon, words: &'w [String]) -> Option<
     };
     let is_last = |end: usize| !is_place(end) && !(end..words.len()).any(names);
     (0..words.len()).rev().find_map(|at| {
-        let (length, state) = named(at)?;
+        let (length, state) = state_at_start(lexicon, &words[at..])?;
         is_last(at + length).then(|| (state, &words[at..at + length]))
     })
 }

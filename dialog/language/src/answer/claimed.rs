@@ -7,18 +7,14 @@ use cohabit_cdf::{ClassId, Fluid, ObjectId, Property, state::StateFlag};
 use crate::{
     answer::{
         Answerer,
-        claim::{Claim, Filling, asked_state},
+        claim::{Claim, Filling, asked_either},
+        state::may_be,
     },
-    ground::{
-        has_state,
-        want::{Miss, Want},
-    },
+    ground::want::{Miss, Want},
     known::{KnownObject, contents, describe},
     read::{
         phrase::{Phrase, RelationKind},
         question::Question,
-        reader::Reader,
-        saying,
     },
     understanding::Understanding,
     words::{
@@ -55,6 +51,10 @@ impl Answerer<'_> {
             Claim::State(StateWord::Flag(StateFlag::Toggled, _), _) => self.flowing_from(phrase).unwrap_or(meant),
             _ => meant,
         };
+        let is_one = !meant.is_any && !meant.is_all && !meant.is_many();
+        if let Some(either) = asked_either(self.lexicon, &question.rest).filter(|_| is_one) {
+            return self.with_object_that(may_be(either[0].0), &meant, |id| self.which_state(id, &either));
+        }
         match claim {
             Claim::State(state, words) if meant.is_any => self.any_in_state(&meant, state, words),
             Claim::State(state, words) if meant.is_all || meant.is_many() => self.are_in_state(&meant, state, words),
@@ -83,7 +83,11 @@ impl Answerer<'_> {
             Claim::Done if question.rest.iter().any(|word| word == "done") && self.is_never_done(&meant) => {
                 Understanding::answer(self.goals().reply())
             }
-            Claim::Done => self.with_known(&meant, |object| self.is_done(object)),
+            Claim::Done => self.with_known(&meant, |object| {
+                let asks_for_parts = self.lexicon.yes_no.says_whole(&question.rest);
+                self.is_whole(object).filter(|_| asks_for_parts).unwrap_or_else(|| self.is_done(object))
+            }),
+            Claim::Back => self.with_known(&bare, |object| self.is_back(object)),
             Claim::For => self.with_known(&bare, |object| {
                 if object.works.is_none() {
                     return self.cannot_tell(object);
@@ -109,7 +113,7 @@ impl Answerer<'_> {
         }
     }
 
-    fn told(&self, holds: bool, text: &str, id: ObjectId) -> Understanding {
+    pub(crate) fn told(&self, holds: bool, text: &str, id: ObjectId) -> Understanding {
         let start = if holds { "Yes" } else { "No" };
         Understanding::whether(holds, format!("{start}, {text}."), vec![id])
     }
@@ -143,145 +147,6 @@ impl Answerer<'_> {
         let chosen = phrase.chosen.or_else(|| spoken.filter(|_| !phrase.is_described()));
         let namings = sources.iter().map(|class| Naming { class: *class, weight: 1.0 }).collect();
         Some(Phrase { fluid: None, namings, chosen, ..phrase.clone() })
-    }
-
-    fn is_in_state(&self, id: ObjectId, state: StateWord, words: &[String]) -> Understanding {
-        if let Some(answer) = self.is_never_so(id, state) {
-            return answer;
-        }
-        if let StateWord::Filled(is_full) = state
-            && let Some(answer) = self.is_stocked(id, is_full)
-        {
-            return answer;
-        }
-        let holds = self.scene.object(id).is_some_and(|object| self.is_so(object, state));
-        let (the, words) = (self.short(id), words.join(" "));
-        let is_lit = self.scene.object(id).is_some_and(|object| self.devices.is_lit(object.class));
-        let is_switched = matches!(state, StateWord::Flag(StateFlag::Toggled, _));
-        let text = if is_switched && is_lit {
-            let state = if holds { "" } else { "not " };
-            format!("{the} is {state}{words}: it runs for a moment only, and its screen stays lit")
-        } else if holds {
-            format!("{the} {} {words}", prose::is(&the))
-        } else if self.may_have_changed(id, state) {
-            format!("{the} {} not {words} when I last saw {}", prose::was(&the), prose::it(&the))
-        } else {
-            format!("{the} {} not {words}", prose::is(&the))
-        };
-        self.told(holds, &text, id)
-    }
-
-    /// That nobody can switch a thing, or open it: it would be off, or closed, for ever.
-    fn is_never_so(&self, id: ObjectId, state: StateWord) -> Option<Understanding> {
-        let may = match state {
-            StateWord::Flag(StateFlag::Toggled, false) => "switched on or off",
-            StateWord::Flag(StateFlag::Opened, false) => "opened or closed",
-            _ => return None,
-        };
-        let object = self.scene.object(id).filter(|object| !self.can_be(object, state))?;
-        Some(Understanding::about(prose::sentence(&format!("{} cannot be {may}", self.short(object.id))), vec![id]))
-    }
-
-    /// Whether what things are put into, and nothing is poured, is full or empty, where more is asked than whether anything is in it:
-    /// what it has not looked into may be either, and how much more goes in nobody told.
-    fn is_stocked(&self, id: ObjectId, is_full: bool) -> Option<Understanding> {
-        let class = self.catalog.class(self.scene.object(id)?.class);
-        if class.receptacle.is_none() || class.has(Property::Fillable) {
-            return None;
-        }
-        match contents::inside(self.catalog, self.scene, id, 0) {
-            None => self.unopened(id),
-            Some(inside) => is_full.then(|| {
-                let text = format!("I cannot tell whether {} is full: {inside}.", self.short(id));
-                Understanding::about(text, vec![id])
-            }),
-        }
-    }
-
-    /// Whether all of several are in a state, and which are not.
-    fn are_in_state(&self, phrase: &Phrase, state: StateWord, words: &[String]) -> Understanding {
-        let Ok(all) = self.each_meant(phrase, state) else { return self.unseen(phrase) };
-        let is_not = |id: &&ObjectId| !self.scene.object(**id).is_some_and(|object| self.is_so(object, state));
-        let others: Vec<ObjectId> = all.iter().filter(is_not).copied().collect();
-        let (words, named) = (words.join(" "), |ids: &[ObjectId]| {
-            prose::list(&ids.iter().take(contents::LIST).map(|id| self.full(*id)).collect::<Vec<_>>(), "and")
-        });
-        let text = match (others.len(), all.len()) {
-            (_, 1) => return self.is_in_state(all[0], state, &[words]),
-            (0, _) => format!("Yes, they are all {words}."),
-            (1, _) => format!("No, {} {} not {words}.", named(&others), prose::is(&self.short(others[0]))),
-            (count, total) if count == total => format!("No, none of them is {words}."),
-            _ => format!("No, {} are not {words}.", named(&others)),
-        };
-        Understanding::whether(others.is_empty(), text, all)
-    }
-
-    /// Whether any of several is in a state, and which are: `is any plate dirty`.
-    pub(crate) fn any_in_state(&self, phrase: &Phrase, state: StateWord, words: &[String]) -> Understanding {
-        let Ok(all) = self.each_meant(phrase, state) else { return self.unseen(phrase) };
-        let is_in = |id: &ObjectId| self.scene.object(*id).is_some_and(|object| self.is_so(object, state));
-        let found: Vec<ObjectId> = all.iter().copied().filter(is_in).collect();
-        if found.is_empty() {
-            let noun = saying::noun_or_thing(phrase);
-            let text = format!("No, I know of no {noun} that {} {}.", prose::is(noun), words.join(" "));
-            return Understanding::whether(false, text, all);
-        }
-        let named: Vec<String> = found.iter().take(contents::LIST).map(|id| self.full(*id)).collect();
-        Understanding::whether(true, format!("Yes: {}.", prose::list(&named, "and")), found)
-    }
-
-    /// All that are meant, wherever they are: `they` are those that were spoken of together, `both` are those at hand.
-    fn each_meant(&self, phrase: &Phrase, state: StateWord) -> Result<Vec<ObjectId>, Miss> {
-        let (ground, want) = (self.ground(), Want::place(Intent::Find, may_be(state), None));
-        match () {
-            () if phrase.is_many() => ground.plausible(phrase, &want),
-            () if phrase.text.starts_with("both ") => ground.all(phrase, &want),
-            () => ground.everywhere(phrase, &want),
-        }
-    }
-
-    /// The state that is asked for behind what is named, and nothing else: `lights still on`.
-    pub(crate) fn state_after_name<'q>(&'q self, question: &'q Question) -> Option<(StateWord, &'q [String])> {
-        let said = &self.lexicon.yes_no;
-        let mut reader = Reader::new(self.lexicon, &question.rest);
-        reader.phrase_with_place()?;
-        let left = said.without_fillers(reader.rest());
-        let (state, words) = asked_state(self.lexicon, left).filter(|(_, words)| left.ends_with(words))?;
-        said.is_filler(&left[..left.len() - words.len()]).then_some((state, words))
-    }
-
-    /// What is in a state here: `is anything broken`.
-    pub(crate) fn all_in_state(&self, state: StateWord, words: &[String], is_whether: bool) -> Understanding {
-        let is_in = |object: &&KnownObject| {
-            object.room == self.scene.robot.room && self.can_be(object, state) && self.is_so(object, state)
-        };
-        let found: Vec<ObjectId> = self.scene.objects.iter().filter(is_in).map(|object| object.id).collect();
-        if found.is_empty() {
-            let start = if is_whether { "No, " } else { "" };
-            let text = prose::sentence(&format!("{start}I know of nothing {} here", words.join(" ")));
-            return Understanding::whether(false, text, Vec::new());
-        }
-        let named: Vec<String> = found.iter().take(contents::LIST).map(|id| self.full(*id)).collect();
-        let start = if is_whether { "yes: " } else { "" };
-        let text = prose::sentence(&format!("{start}{}", prose::list(&named, "and")));
-        Understanding::whether(true, text, found)
-    }
-
-    /// Whether it is worth saying that a thing is so: a table is not closed, nor a lamp dry. What is so needs no leave to be so.
-    pub(crate) fn can_be(&self, object: &KnownObject, state: StateWord) -> bool {
-        let changed_by: &[Intent] = match state {
-            StateWord::Flag(_, true) => return true,
-            StateWord::Flag(StateFlag::Wet, _) => &[Intent::Dry, Intent::Water],
-            StateWord::Flag(StateFlag::Creased, _) => &[Intent::Iron],
-            StateWord::Flag(StateFlag::Folded, _) => &[Intent::Fold],
-            _ => &[],
-        };
-        let (class, may) = (self.catalog.class(object.class), may_be(state));
-        if changed_by.is_empty() {
-            return may.is_empty() || may.iter().any(|property| class.has(*property));
-        }
-        let mut processes = self.devices.processes.iter();
-        processes.any(|process| changed_by.contains(&process.intent) && process.of.contains(&object.class))
     }
 
     fn is_of_color(&self, object: &KnownObject, asked: &str) -> Understanding {
@@ -389,13 +254,20 @@ impl Answerer<'_> {
         }
     }
 
-    /// The machine in which a thing is, if it works on what is in it.
-    fn machine_around(&self, object: &KnownObject) -> Option<&KnownObject> {
-        self.scene.ancestors(object.id).find(|outer| self.has_work(outer))
+    pub(crate) fn has_work(&self, object: &KnownObject) -> bool {
+        self.catalog.table().device(&self.catalog.class(object.class).id).work.is_some()
     }
 
-    fn has_work(&self, object: &KnownObject) -> bool {
-        self.catalog.table().device(&self.catalog.class(object.class).id).work.is_some()
+    /// Whether a machine has all parts that it is not worked without, and what it lacks; nothing, where it needs none.
+    fn is_whole(&self, object: &KnownObject) -> Option<Understanding> {
+        let lacked = self.facts().lacked(object)?;
+        let (the, lacked) =
+            (self.short(object.id), lacked.iter().map(|part| format!("its {part}")).collect::<Vec<_>>());
+        let text = match lacked.is_empty() {
+            true => format!("{the} is complete: nothing is missing in it"),
+            false => format!("{the} is not complete: it lacks {}", prose::list(&lacked, "and")),
+        };
+        Some(self.told(lacked.is_empty(), &text, object.id))
     }
 
     /// Whether a machine has run its time, or what is to be warm is so; what is in a machine is done when that is.
@@ -406,10 +278,14 @@ impl Answerer<'_> {
             let is_worked_on = machine.has(StateFlag::Toggled) || self.context.deeds.did(Intent::TurnOn, machine.id);
             is_worked_on.then_some(machine)
         };
+        let is_on = object.has(StateFlag::Toggled);
+        let has_run = self.has_work(object) && self.context.deeds.did(Intent::TurnOn, object.id);
         match () {
+            () if has_run && !is_on && object.has(StateFlag::Hot) && object.fluid != Fluid::None => {
+                let fills = object.fluid.name().to_lowercase();
+                self.told(true, &format!("the {fills} in {the} is hot"), object.id)
+            }
             () if class.has(Property::Toggleable) => {
-                let is_on = object.has(StateFlag::Toggled);
-                let has_run = self.has_work(object) && self.context.deeds.did(Intent::TurnOn, object.id);
                 let state = match (is_on, has_run) {
                     (true, _) => "still on",
                     (false, true) => "done",
@@ -427,6 +303,20 @@ impl Answerer<'_> {
         }
     }
 
+    /// Whether a thing is where it was before the robot took it, for the first time or the last.
+    fn is_back(&self, object: &KnownObject) -> Understanding {
+        let (id, place, focus) = (object.id, self.place_sentence(object.id), &self.context.focus);
+        let Some((_, first)) = focus.firsts.iter().find(|(taken, _)| *taken == id) else {
+            return Understanding::about(format!("I have not taken {} anywhere: {place}.", self.short(id)), vec![id]);
+        };
+        let is_at = |from: Option<ObjectId>| match from {
+            Some(place) => object.parent == Some(place),
+            None => self.scene.is_on_floor(object),
+        };
+        let is_at_last = focus.origins.iter().any(|(taken, from)| *taken == id && is_at(Some(*from)));
+        self.told(is_at(*first) || is_at_last, &place, id)
+    }
+
     fn can_be_filled(&self, object: &KnownObject) -> bool {
         self.catalog.class(object.class).has(Property::Fillable)
     }
@@ -435,47 +325,5 @@ impl Answerer<'_> {
     pub(crate) fn claim_told(&self, phrase: &Phrase, question: &Question) -> Option<Understanding> {
         let claim = Claim::read(self.lexicon, phrase, &question.rest);
         matches!(claim, Claim::Sound(_) | Claim::Full(_) | Claim::Color(_)).then(|| self.claim(phrase, question))
-    }
-
-    /// Whether a thing is in a state as people say it: coffee that is no longer hot is cold.
-    pub(crate) fn is_so(&self, object: &KnownObject, state: StateWord) -> bool {
-        match state {
-            StateWord::Flag(StateFlag::Cold, is_cold) if object.fluid == Fluid::Coffee => {
-                object.has(StateFlag::Hot) != is_cold
-            }
-            // What things stand in is not empty.
-            StateWord::Filled(is_full) if self.scene.contents(object.id).next().is_some() => is_full,
-            StateWord::Filled(is_full) if contents::has_cereal(self.catalog, object) => is_full,
-            StateWord::Flag(StateFlag::Broken, is_broken) => self.facts().is_broken(object) == is_broken,
-            state => has_state(object, state),
-        }
-    }
-
-    fn cannot_tell(&self, object: &KnownObject) -> Understanding {
-        self.all_known(object, "I cannot tell")
-    }
-
-    /// Whether it may be otherwise by now: hot or cold, or in a machine that has done its work, since the robot saw it.
-    pub(crate) fn may_have_changed(&self, id: ObjectId, state: StateWord) -> bool {
-        let is_warmth = matches!(state, StateWord::Flag(StateFlag::Hot | StateFlag::Cold, _));
-        let holder = self.scene.object(id).and_then(|object| self.scene.object(object.parent?));
-        let is_in_machine = holder.is_some_and(|holder| {
-            let device = self.catalog.table().device(&self.catalog.class(holder.class).id);
-            device.work.is_some() && matches!(state, StateWord::Flag(..))
-        });
-        let is_seen = self.scene.robot.held == Some(id) || self.scene.object(id).is_some_and(|object| object.visible);
-        (is_warmth || is_in_machine) && !is_seen
-    }
-}
-
-/// What things afford that may be in a state.
-const fn may_be(state: StateWord) -> &'static [Property] {
-    match state {
-        StateWord::Flag(StateFlag::Dirty, _) => &[Property::Dirtyable],
-        StateWord::Flag(StateFlag::Broken, _) => &[Property::Breakable],
-        StateWord::Flag(StateFlag::Opened, _) => &[Property::Openable],
-        StateWord::Flag(StateFlag::Toggled, _) => &[Property::Toggleable, Property::Powerable],
-        StateWord::Filled(_) => &[Property::Fillable],
-        StateWord::Flag(..) => &[],
     }
 }

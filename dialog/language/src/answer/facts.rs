@@ -51,11 +51,6 @@ impl Facts<'_> {
     /// What it is for: what it does, what it belongs to, and who says something about it.
     pub(crate) fn purpose(&self, object: &KnownObject) -> String {
         let the = self.the(object.id);
-        let does = self.devices.uses.of(object.class).map(|does| format!("{the} {does}"));
-        let works = self.worked_by(object).map(|worked| match self.devices.uses.of(worked) {
-            Some(does) => format!("{the} switches the {}, which {does}", describe::name(self.catalog, worked)),
-            None => format!("{the} switches the {}", describe::name(self.catalog, worked)),
-        });
         let belongs = self.key_of(object.class).map(|place| {
             let place = describe::name(self.catalog, place);
             format!("{the} belongs in the {place}")
@@ -64,9 +59,32 @@ impl Facts<'_> {
             let printed = prose::indefinite(&describe::name(self.catalog, printed));
             format!("{the} makes the printer print {printed}")
         });
-        let first = does.or(works).or(prints).or(belongs).unwrap_or_else(|| self.affords(object));
-        let told = self.told_of(object);
+        let first = self.use_of(object).or(prints).or(belongs).unwrap_or_else(|| self.affords(object));
+        let told = self.switched_by(object).into_iter().chain(self.told_of(object));
         std::iter::once(first).chain(told).map(|text| prose::sentence(&text)).collect::<Vec<_>>().join(" ")
+    }
+
+    /// What it does, or what the machine does that it switches, where that is known.
+    pub(crate) fn use_of(&self, object: &KnownObject) -> Option<String> {
+        let the = self.the(object.id);
+        let does = self.devices.uses.of(object.class).map(|does| format!("{the} {does}"));
+        let works = || {
+            let worked = self.worked_by(object)?;
+            let machine = describe::name(self.catalog, worked);
+            Some(match self.devices.uses.of(worked) {
+                Some(does) => format!("{the} switches the {machine}, which {does}"),
+                None => format!("{the} switches the {machine}"),
+            })
+        };
+        does.or_else(works)
+    }
+
+    /// What a machine is switched by that has no switch of its own.
+    fn switched_by(&self, machine: &KnownObject) -> Option<String> {
+        let classes = self.devices.workers(machine.class)?;
+        let works = |one: &&KnownObject| one.works == Some(machine.id) && classes.contains(&one.class);
+        let known: Vec<String> = self.scene.objects.iter().filter(works).map(|one| self.the(one.id)).collect();
+        (!known.is_empty()).then(|| format!("it has no switch of its own: {} works it", prose::list(&known, "or")))
     }
 
     /// What a kind of thing is for, where that is known.
@@ -116,7 +134,8 @@ impl Facts<'_> {
     /// The goal that needs it, and what is written about it.
     fn told_of(&self, object: &KnownObject) -> impl Iterator<Item = String> {
         let goal = self.scene.goals.iter().find(|goal| !goal.met && self.speaks_of(&goal.text, object));
-        let goal = goal.map(|goal| format!("The mission needs it: {}", goal.text));
+        let it = prose::it(&self.the(object.id));
+        let goal = goal.map(|goal| format!("The mission needs {it}: {}", goal.text));
         goal.into_iter().chain(self.written_of(object))
     }
 
@@ -162,8 +181,7 @@ impl Facts<'_> {
         if said.is_empty() {
             return format!("the {bare} {} {place}", prose::is(&bare));
         }
-        let (is, said) = (prose::is(&bare), prose::list(&said, "and"));
-        let they = if is == "are" { "they" } else { "it" };
+        let (is, they, said) = (prose::is(&bare), prose::they(&bare), prose::list(&said, "and"));
         format!("the {bare} {is} {said}; {they} {is} {place}")
     }
 
@@ -184,6 +202,12 @@ impl Facts<'_> {
         let lacks = self.parts_lacked(object).map(|part| format!("it lacks its {part}"));
         let wrong: Vec<String> = wrong.chain(no_power).chain(lacks).collect();
         (!wrong.is_empty()).then(|| prose::list(&wrong, "and"))
+    }
+
+    /// The names of parts that a machine lacks, as far as can be seen; nothing, of what is worked without any.
+    pub(crate) fn lacked(&self, object: &KnownObject) -> Option<Vec<String>> {
+        self.catalog.table().parts_needed(&self.catalog.class(object.class).id).next()?;
+        Some(self.parts_lacked(object).collect())
     }
 
     /// The names of parts that it is not worked without, and that are not in it as far as can be seen.

@@ -18,8 +18,12 @@ use crate::{
 impl Answerer<'_> {
     pub(crate) fn holder(&self, id: ObjectId) -> Understanding {
         let is_held = self.scene.robot.held == Some(id);
-        let who = if is_held { "I have it" } else { "Nobody that I know of" };
-        Understanding::about(format!("{who}: {}.", self.place_sentence(id)), vec![id])
+        let place = self.place_sentence(id);
+        let text = match is_held {
+            true => format!("I have {}: {place}.", prose::it(&self.short(id))),
+            false => format!("Nobody that I know of: {place}."),
+        };
+        Understanding::about(text, vec![id])
     }
 
     /// Where it was taken from, or where it is, if it was not taken.
@@ -112,6 +116,32 @@ impl Answerer<'_> {
             return Understanding::whether(false, text, others);
         }
         Understanding::whether(true, prose::sentence(&places(&fitting)), fitting)
+    }
+
+    /// Where the things of a kind are; of a place at which none is known, that, and where others are.
+    pub(crate) fn of_kind(&self, phrase: &Phrase) -> Understanding {
+        let want = Want::place(Intent::Find, &[], None);
+        let places = |ids: &[ObjectId]| {
+            let mut told: Vec<String> = ids.iter().take(contents::LIST).map(|id| self.place_sentence(*id)).collect();
+            told.dedup();
+            prose::list(&told, "and")
+        };
+        if let Some(found) = self.ground().everywhere(phrase, &want).ok().filter(|found| !found.is_empty()) {
+            return Understanding::whether(true, prose::sentence(&places(&found)), found);
+        }
+        let noun = saying::noun_or_thing(phrase);
+        let is_here = phrase.is_here || phrase.room == Some(self.scene.robot.room);
+        let there = if is_here { "here" } else { "there" };
+        let bare = Phrase { room: None, is_here: false, relations: Vec::new(), ..phrase.clone() };
+        match self.ground().everywhere(&bare, &want) {
+            Ok(others) if bare != *phrase && !others.is_empty() => {
+                Understanding::whether(false, format!("I know of no {noun} {there}: {}.", places(&others)), others)
+            }
+            _ if bare != *phrase => {
+                Understanding::whether(false, format!("I have seen no {noun} {there}."), Vec::new())
+            }
+            _ => Understanding::whether(false, format!("I have seen no {noun} yet."), Vec::new()),
+        }
     }
 
     /// `is there another cup`: the one in the hand, or else that which was spoken of last, and those beside it; nothing, where none is in
@@ -300,6 +330,26 @@ impl Answerer<'_> {
         // Who has opened it knows what was in it.
         let has_looked = self.context.deeds.did(Intent::Open, id);
         (is_shut && !has_looked && self.scene.floor.is_some()).then(|| crate::say::ask::confirmation(text))
+    }
+
+    /// What is before a thing: what it aims at by the table of devices, and what is there; of what aims at nothing, what is next to it.
+    pub(crate) fn before(&self, id: ObjectId) -> Understanding {
+        let Some(target) = self.scene.object(id).and_then(|object| self.aim_of(object)) else {
+            return self.neighbours(id);
+        };
+        let aims = prose::sentence(&format!("{} aims at {}", self.short(id), self.short(target)));
+        self.contents(target).after(&aims)
+    }
+
+    /// The nearest thing in its room of those that a machine aims at.
+    fn aim_of(&self, machine: &KnownObject) -> Option<ObjectId> {
+        let aims = &self.catalog.table().device(&self.catalog.class(machine.class).id).aims;
+        let is_aim = |object: &&KnownObject| {
+            object.room == machine.room && aims.iter().any(|class| *class == self.catalog.class(object.class).id)
+        };
+        let apart_m = |object: &KnownObject| floor::distance_m(object.position_m, machine.position_m);
+        let aims = self.scene.objects.iter().filter(is_aim);
+        aims.min_by(|one, other| apart_m(one).total_cmp(&apart_m(other)).then(one.id.cmp(&other.id))).map(|aim| aim.id)
     }
 
     /// What is next to a thing, the nearest first.

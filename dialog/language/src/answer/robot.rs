@@ -121,14 +121,12 @@ impl Answerer<'_> {
         if let Some(chosen) = about.and_then(|phrase| self.why_this_one(phrase)) {
             return chosen;
         }
-        let deed = whether::deed_asked_about(self.lexicon, self.catalog, &question.rest).map(|clause| clause.intent);
-        let want = Want::place(Intent::Find, &[], None);
-        let object = about.and_then(|phrase| self.ground().one(phrase, &want).ok());
+        let (deed, object) = self.asked_why(about, question);
         let is_denied = question.rest.iter().any(|word| self.lexicon.ifs.negations.contains(word));
         // What it did is told although something else failed or was refused since.
         let is_done = deed.zip(object).is_some_and(|(intent, id)| !is_denied && self.context.deeds.did(intent, id));
         if is_done || !is_about_deeds(&question.rest) {
-            let why = self.context.deeds.why(deed, object);
+            let why = self.why_done(deed, object);
             return Understanding::answer(why.map_or_else(|| "I do not know why.".to_owned(), |why| format!("{why}.")));
         }
         if let Some(failure) = &self.context.failed {
@@ -145,7 +143,7 @@ impl Answerer<'_> {
         if let Some(not) = self.not_asked_for(object, &question.rest) {
             return Understanding::answer(not);
         }
-        if let Some(why) = self.context.deeds.why(deed, object) {
+        if let Some(why) = self.why_done(deed, object) {
             return Understanding::answer(format!("{why}."));
         }
         let Some(last) = self.context.last_plan.last().filter(|_| !self.context.reason.is_empty()) else {
@@ -164,6 +162,13 @@ impl Answerer<'_> {
                 self.context.deeds.goals_of(reason)
             ),
         })
+    }
+
+    /// What kind of deed it is asked the reason of, and the thing that is named.
+    pub(crate) fn asked_why(&self, about: Option<&Phrase>, question: &Question) -> (Option<Intent>, Option<ObjectId>) {
+        let deed = whether::deed_asked_about(self.lexicon, self.catalog, &question.rest).map(|clause| clause.intent);
+        let want = Want::place(Intent::Find, &[], None);
+        (deed, about.and_then(|phrase| self.ground().one(phrase, &want).ok()))
     }
 
     /// `why did you not close the microwave`: that nobody asked for it, unless it was done.
@@ -214,8 +219,16 @@ impl Answerer<'_> {
     }
 
     pub(crate) fn done_so_far(&self) -> Understanding {
-        let told = self.context.deeds.all_told();
-        Understanding::answer(told.map_or_else(|| "I have done nothing yet.".to_owned(), |told| prose::sentence(&told)))
+        let Some(told) = self.context.deeds.all_told() else {
+            return Understanding::answer("I have done nothing yet.");
+        };
+        let goals: Vec<&str> = self.context.deeds.goals().map(|goal| goal.trim_end_matches('.')).collect();
+        let told = Understanding::answer(prose::sentence(&told));
+        if goals.is_empty() {
+            told
+        } else {
+            told.before(&format!("That did what the mission wants: {}.", goals.join("; ")))
+        }
     }
 
     /// Why one of several that may be meant was taken; nothing, where there was no choice.

@@ -41,15 +41,19 @@ impl Answerer<'_> {
 
     /// What a thing is for; of what was not seen yet, what its kind is for.
     pub(crate) fn purpose(&self, phrase: &Phrase) -> Understanding {
-        let want = Want::place(Intent::Find, &[], None);
-        let is_known = self.ground().one(phrase, &want).is_ok();
-        let of_kind = || phrase.namings.iter().find_map(|naming| self.facts().purpose_of_kind(naming.class));
-        match of_kind().filter(|_| !is_known) {
+        match self.purpose_of_unseen(phrase) {
             Some(text) => Understanding::answer(text),
             None => {
                 self.with_known(phrase, |object| Understanding::about(self.facts().purpose(object), vec![object.id]))
             }
         }
+    }
+
+    /// What the kind of a thing is for, of which none is known yet.
+    fn purpose_of_unseen(&self, phrase: &Phrase) -> Option<String> {
+        let is_known = self.ground().one(phrase, &Want::place(Intent::Find, &[], None)).is_ok();
+        let of_kind = || phrase.namings.iter().find_map(|naming| self.facts().purpose_of_kind(naming.class));
+        of_kind().filter(|_| !is_known)
     }
 
     /// How things are, and what they are for.
@@ -67,9 +71,18 @@ impl Answerer<'_> {
         }
     }
 
-    /// What is known of a thing, where that is not what was asked.
+    /// What is known of a thing, where that is not what was asked: what it does, too, which may be what was meant.
     pub(crate) fn unknown_of(&self, phrase: &Phrase) -> Understanding {
-        self.with_known(phrase, |object| self.all_known(object, "I do not know that"))
+        if let Some(kind) = self.purpose_of_unseen(phrase) {
+            return self.unseen(phrase).after(&kind);
+        }
+        self.with_known(phrase, |object| {
+            let known = self.all_known(object, "I do not know that");
+            match self.facts().use_of(object) {
+                Some(does) => known.before(&prose::sentence(&does)),
+                None => known,
+            }
+        })
     }
 
     pub(crate) fn danger(&self, about: Option<&Phrase>, question: &Question) -> Understanding {

@@ -27,6 +27,9 @@ pub(crate) struct Deed {
     /// The goals of the mission that were met by then, and not before.
     #[serde(default)]
     pub(crate) goals: Vec<String>,
+    /// Whether what it was done for was never finished: nothing that follows tells of it.
+    #[serde(default)]
+    pub(crate) is_cut_short: bool,
 }
 
 /// All that it remembers to have done, the latest last.
@@ -88,9 +91,15 @@ impl Deeds {
         if !step.commits() || step.says.is_empty() || self.0.last().is_some_and(is_next_leg) {
             return;
         }
-        self.0.push(Deed { step: step.clone(), reason: reason.to_owned(), goals: Vec::new() });
+        self.0.push(Deed { step: step.clone(), reason: reason.to_owned(), goals: Vec::new(), is_cut_short: false });
         let surplus = self.0.len().saturating_sub(MEMORY);
         self.0.drain(..surplus);
+    }
+
+    /// What was done last for this reason comes to nothing: a step after it failed, or it was stopped.
+    pub(crate) fn cut_short(&mut self, reason: &str) {
+        let of_reason = self.0.iter_mut().rev().take_while(|deed| deed.reason == reason);
+        of_reason.for_each(|deed| deed.is_cut_short = true);
     }
 
     /// The last deed has met what goals are met now and were not before.
@@ -123,14 +132,40 @@ impl Deeds {
         self.0.split_at(self.0.len() - same)
     }
 
-    /// Why it did something of that kind last, to this thing or with it where one is named, and what goals that met; nothing, where no deed
-    /// could tell.
-    pub(crate) fn why(&self, intent: Option<Intent>, id: Option<ObjectId>) -> Option<String> {
+    /// Why it did something of that kind last, to this thing or with it where one is named: what it was needed for, if that is known, what
+    /// was asked for, and what goals that met; nothing, where no deed could tell.
+    pub(crate) fn why(&self, intent: Option<Intent>, id: Option<ObjectId>, need: Option<&str>) -> Option<String> {
+        let deed = self.asked_about(intent, id)?;
+        let asked = format!("{}{}", deed.reason, self.goals_of(&deed.reason));
+        let why = match need {
+            Some(need) => format!("{need}. {}", prose::sentence(&asked).trim_end_matches('.')),
+            None => asked,
+        };
+        Some(format!("I {}, since {why}", deed.in_words()))
+    }
+
+    /// The deed of that kind that was done last, to this thing or with it where one is named; or else the last that was done about that
+    /// thing.
+    pub(crate) fn asked_about(&self, intent: Option<Intent>, id: Option<ObjectId>) -> Option<&Deed> {
         let is_about = |deed: &&Deed| id.is_none_or(|id| self.is_about(deed, id));
         let is_of_kind = |deed: &&Deed| intent.is_some_and(|intent| is_of(&deed.step.action, intent));
         let of_kind = self.0.iter().rfind(|deed| is_of_kind(deed) && is_about(deed));
-        let deed = of_kind.or_else(|| self.0.iter().rfind(|deed| id.is_some() && is_about(deed)))?;
-        Some(format!("I {}, since {}{}", deed.in_words(), deed.reason, self.goals_of(&deed.reason)))
+        of_kind.or_else(|| self.0.iter().rfind(|deed| id.is_some() && is_about(deed)))
+    }
+
+    /// What was done after a deed for the same request.
+    pub(crate) fn followed_by(&self, deed: &Deed) -> impl Iterator<Item = &Deed> {
+        let at = self.0.iter().position(|other| std::ptr::eq(other, deed)).unwrap_or(self.0.len());
+        self.0.iter().skip(at + 1).take_while(move |next| next.reason == deed.reason)
+    }
+
+    /// The goals of the mission that its deeds have met, the first first.
+    pub(crate) fn goals(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().flat_map(|deed| &deed.goals).map(String::as_str)
+    }
+
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// What goals deeds of this reason met, as a sentence to follow another one; empty, where they met none.
@@ -143,7 +178,7 @@ impl Deeds {
     }
 
     /// All that it did, in words and in the order in which it was done; of much, where things went and what was changed for good, or else
-    /// the last that was changed for each request.
+    /// the last that was changed for each request, and all that was done for those that were never finished.
     pub(crate) fn all_told(&self) -> Option<String> {
         if self.0.len() <= ALL_TOLD {
             let told = self.listed(self.0.iter(), ALL_TOLD);
@@ -151,7 +186,10 @@ impl Deeds {
         }
         let mut told: Vec<&Deed> = self.0.iter().filter(|deed| self.matters(deed)).collect();
         if told.is_empty() || told.len() > MATTERING_TOLD {
-            told = main_deeds(&self.0).collect();
+            let main: Vec<&Deed> = main_deeds(&self.0).collect();
+            let is_main = |deed: &&Deed| main.iter().any(|one| std::ptr::eq(*one, *deed));
+            let left = self.0.iter().filter(|deed| is_main(deed) || deed.is_cut_short && self.matters(deed));
+            told = left.collect();
         }
         let start = if told.len() > MATTERING_TOLD { "Of late" } else { "So far" };
         Some(format!("{start} I {}", self.listed(told.into_iter(), MATTERING_TOLD)))
@@ -165,6 +203,8 @@ impl Deeds {
         let after = &self.0[(at + 1).min(self.0.len())..];
         let undoes = |other: &Deed| is_undone_by(&deed.step.action, &other.step.action);
         match deed.step.action {
+            // What it was taken for was not done, so nothing else tells that it was taken.
+            Action::PickUp { .. } if deed.is_cut_short => true,
             Action::PickUp { .. } => {
                 held_after(&self.0) == self.done_to(deed) && after.iter().all(|one| !is_taking(one))
             }
@@ -196,6 +236,7 @@ impl Deeds {
         let in_hand = match deed.step.action {
             Action::PickUp { .. }
             | Action::Place { .. }
+            | Action::PlaceBeside { .. }
             | Action::Interact { verb: Verb::Pour | Verb::Throw | Verb::Fill | Verb::Clean, .. } => self.done_to(deed),
             _ => return told,
         };
@@ -250,6 +291,7 @@ impl Deeds {
             // What is ironed or watered is not in the hand: the iron or the can is.
             _ if deed.step.by_hand().is_some() => deed.step.object(),
             Action::Place { .. }
+            | Action::PlaceBeside { .. }
             | Action::Interact { verb: Verb::Pour | Verb::Throw | Verb::Fill | Verb::Clean, .. } => {
                 self.held_before(deed)
             }
@@ -261,14 +303,28 @@ impl Deeds {
         self.done_to(deed) == Some(id)
     }
 
+    /// The things that it did something to, the latest first.
+    pub(crate) fn things(&self) -> impl Iterator<Item = ObjectId> {
+        self.0.iter().rev().filter_map(|deed| deed.step.object())
+    }
+
     /// What it did something of that kind to last: `it`, where that is asked about.
     pub(crate) fn last_done_to(&self, intent: Intent) -> Option<ObjectId> {
         self.done_to(self.0.iter().rfind(|deed| is_of_step(&deed.step, intent))?)
     }
 
+    /// Whether it switched a machine on or off after it last had this thing in its hand, and looked into the machine.
+    pub(crate) fn has_switched_since(&self, machine: ObjectId, thing: ObjectId) -> bool {
+        let interacts = |deed: &Deed, verb| deed.step.action == Action::Interact { verb, object: machine };
+        let switched = self.0.iter().rposition(|deed| interacts(deed, Verb::Toggle));
+        let knew = |deed: &Deed| interacts(deed, Verb::Open) || self.is_done_to(deed, thing);
+        let known = self.0.iter().rposition(knew);
+        switched.is_some_and(|at| known.is_none_or(|before| before < at))
+    }
+
     /// Whether it put this thing there.
     pub(crate) fn did_put(&self, id: ObjectId, place: ObjectId) -> bool {
-        let puts = |deed: &Deed| deed.step.action == Action::Place { receptacle: place } && self.is_done_to(deed, id);
+        let puts = |deed: &Deed| deed.step.action.receptacle() == Some(place) && self.is_done_to(deed, id);
         self.0.iter().any(puts)
     }
 
@@ -338,7 +394,9 @@ fn main_deeds(deeds: &[Deed]) -> impl Iterator<Item = &Deed> {
 fn is_of(action: &Action, intent: Intent) -> bool {
     let verb = match action {
         Action::PickUp { .. } => return matches!(intent, Intent::PickUp | Intent::Bring),
-        Action::Place { .. } => return matches!(intent, Intent::Place | Intent::Drop | Intent::Bring),
+        Action::Place { .. } | Action::PlaceBeside { .. } => {
+            return matches!(intent, Intent::Place | Intent::Drop | Intent::Bring);
+        }
         Action::GoTo { .. } => return matches!(intent, Intent::GoTo | Intent::Travel | Intent::Find),
         Action::Rotate { .. } => return intent == Intent::Turn,
         Action::Interact { verb, .. } => verb,
@@ -378,7 +436,7 @@ fn is_undone_by(one: &Action, other: &Action) -> bool {
 fn held_after(deeds: &[Deed]) -> Option<ObjectId> {
     let held = |deed: &Deed| match deed.step.action {
         Action::PickUp { object } => Some(Some(object)),
-        Action::Place { .. } => Some(None),
+        Action::Place { .. } | Action::PlaceBeside { .. } => Some(None),
         _ => None,
     };
     deeds.iter().rev().find_map(held).flatten()
@@ -409,8 +467,8 @@ mod tests {
         let told = "I opened the fridge and picked up the milk. Before that I opened the door";
         assert_eq!(deeds.told().as_deref(), Some(told));
         let why = "I picked up the milk, since get the milk. The mission wanted it: Take the milk";
-        assert_eq!(deeds.why(Some(Intent::PickUp), Some(milk)).as_deref(), Some(why));
-        assert_eq!(deeds.why(Some(Intent::Pour), None), None);
+        assert_eq!(deeds.why(Some(Intent::PickUp), Some(milk), None).as_deref(), Some(why));
+        assert_eq!(deeds.why(Some(Intent::Pour), None, None), None);
         assert!(deeds.did(Intent::PickUp, milk));
         assert!(!deeds.did(Intent::Place, milk));
         assert!(deeds.did(Intent::GoTo, fridge), "who opened it was there");
@@ -437,6 +495,27 @@ mod tests {
         deeds.add(&step(Action::PickUp { object: tumbler }, "picking up the tumbler"), "take the tumbler");
         let much = "So far I filled the tumbler at the tap, put the tumbler on the table, put the blanket on the table, \
                     opened the door and picked up the tumbler";
+        assert_eq!(deeds.all_told().as_deref(), Some(much));
+    }
+
+    #[test]
+    fn what_was_done_for_what_was_never_finished_is_told() {
+        let (mug, counter, fridge) = (ObjectId(1), ObjectId(2), ObjectId(3));
+        let open = |object| Action::Interact { verb: Verb::Open, object };
+        let mut deeds = Deeds::default();
+        deeds.add(&step(Action::PickUp { object: mug }, "picking up the mug"), "wash the mug");
+        deeds.add(&step(open(fridge), "opening the fridge"), "wash the mug");
+        deeds.cut_short("wash the mug");
+        deeds.add(&step(Action::Place { receptacle: counter }, "putting the mug on the counter"), "put it down");
+        let open_more = |deeds: &mut Deeds, number| {
+            deeds.add(&step(open(ObjectId(number)), &format!("opening cupboard {number}")), "open them");
+        };
+        (10..17).for_each(|number| open_more(&mut deeds, number));
+        let told = deeds.all_told().unwrap_or_default();
+        let begin = "So far I picked up the mug, opened the fridge, put the mug on the counter, opened cupboard 10";
+        assert!(told.starts_with(begin), "{told}");
+        (17..22).for_each(|number| open_more(&mut deeds, number));
+        let much = "So far I picked up the mug, opened the fridge, put the mug on the counter and opened cupboard 21";
         assert_eq!(deeds.all_told().as_deref(), Some(much));
     }
 

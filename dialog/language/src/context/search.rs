@@ -75,20 +75,26 @@ impl Search {
         own.len() == others.len() && own.iter().zip(&others).all(|(one, other)| are_alike(one, other))
     }
 
-    /// Whether it goes on where another one ends.
-    pub(crate) fn goes_on_from(&self, other: &Self) -> bool {
+    /// What is left of it once another one is over, which it goes on from, or which only finds what it does something with; nothing,
+    /// where it is something else.
+    pub(crate) fn left_after(&self, other: &Self) -> Option<Vec<Clause>> {
         let asked = |search: &Self| -> Vec<Clause> {
             search.clauses.iter().filter(|clause| clause.intent != Intent::Mention).cloned().collect()
         };
         let (own, others) = (asked(self), asked(other));
-        own.len() > others.len() && own.iter().zip(&others).all(|(one, other)| are_alike(one, other))
+        if own.len() >= others.len() && own.iter().zip(&others).all(|(one, other)| are_alike(one, other)) {
+            return Some(own[others.len()..].to_vec());
+        }
+        let is_about = |phrase: &&Phrase| own.iter().flat_map(slot::named).any(|own| may_mean_the_same(own, phrase));
+        let leads = |clause: &Clause| only_goes(clause) && slot::named(clause).iter().all(is_about);
+        let does_more = !own.iter().all(only_goes) && !others.is_empty();
+        (does_more && others.iter().all(leads)).then(|| self.deeds().into_iter().cloned().collect())
     }
 
     /// What it is for, without what only brings the robot there and what is only spoken of, if there is more to it.
     pub(crate) fn deeds(&self) -> Vec<&Clause> {
-        let only_goes =
-            |clause: &&Clause| matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look | Intent::Mention);
-        let deeds: Vec<&Clause> = self.clauses.iter().filter(|clause| !only_goes(clause)).collect();
+        let is_deed = |clause: &&Clause| !only_goes(clause) && clause.intent != Intent::Mention;
+        let deeds: Vec<&Clause> = self.clauses.iter().filter(is_deed).collect();
         if deeds.is_empty() { self.clauses.iter().collect() } else { deeds }
     }
 
@@ -176,6 +182,11 @@ impl Search {
         }
         is_new
     }
+}
+
+/// Whether it brings the robot to something, and no more.
+const fn only_goes(clause: &Clause) -> bool {
+    matches!(clause.intent, Intent::GoTo | Intent::Find | Intent::Look)
 }
 
 /// Whether two clauses ask for the same.

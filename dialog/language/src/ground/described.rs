@@ -7,8 +7,8 @@ use crate::{
         self, Described, Ground, NEAR_M, WORSE_NAME,
         want::{Miss, Want},
     },
-    known::{KnownObject, describe, floor},
-    read::phrase::{Phrase, Relation, RelationKind},
+    known::{KnownObject, describe, floor, vending},
+    read::phrase::{BOTH, Phrase, Relation, RelationKind},
     understanding::Asking,
     words::{
         intent::Intent,
@@ -44,6 +44,7 @@ impl<'a> Ground<'a> {
         }
         ground::keep_if_any(&mut base, |object| Some(object.id) != want.exclude);
         self.keep_affording(phrase, &mut base, want);
+        self.drop_stand_ins(phrase, &mut base);
         let mut left = base.clone();
         left.retain(|object| self.is_as_said(phrase, object));
         if let Some(color) = &phrase.color {
@@ -56,11 +57,14 @@ impl<'a> Ground<'a> {
         if left.is_empty() {
             left = self.plain_ones(phrase, &base);
         }
-        // `the banana over there` points, where nothing was spoken of that it is on.
-        let points = |relation: &Relation| relation.to.pronoun == Some(Pronoun::Place);
-        if left.is_empty() && phrase.relations.iter().any(points) {
+        // `the banana over there` points, where nothing was spoken of that it is on; `the lamp in the vestibule` tells nothing to who does
+        // not know that word.
+        let is_strange = |to: &Phrase| !to.says_something() && !to.unknown.is_empty();
+        let tells_nothing =
+            |relation: &Relation| relation.to.pronoun == Some(Pronoun::Place) || is_strange(&relation.to);
+        if left.is_empty() && phrase.relations.iter().any(tells_nothing) {
             let mut bare = phrase.clone();
-            bare.relations.retain(|relation| !points(relation));
+            bare.relations.retain(|relation| !tells_nothing(relation));
             return self.described(&bare, want);
         }
         if left.is_empty()
@@ -75,6 +79,7 @@ impl<'a> Ground<'a> {
         for state in &phrase.states {
             ground::keep_if_any(&mut left, |object| self.is_in_state(object, *state));
         }
+        self.drop_of_other_size(phrase, &mut left, &mut base);
         self.keep_nearest(phrase, &mut left);
         self.keep_at_side(phrase, &mut left);
         self.keep_at_side(phrase, &mut base);
@@ -135,7 +140,12 @@ impl<'a> Ground<'a> {
             self.scene.objects.iter().filter(|other| self.is_loosely(&near.to, other)).collect();
         let apart_m = |object: &KnownObject| {
             let others = others.iter().filter(|other| other.id != object.id && other.room == object.room);
-            others.map(|other| floor::distance_m(other.position_m, object.position_m)).fold(f32::INFINITY, f32::min)
+            // `the table next to the plate` is the one that the plate stands on.
+            let way_m = |other: &&KnownObject| {
+                let carries = other.parent == Some(object.id);
+                if carries { 0.0 } else { floor::distance_m(other.position_m, object.position_m) }
+            };
+            others.map(way_m).fold(f32::INFINITY, f32::min)
         };
         let least_m = objects.iter().map(|object| apart_m(object)).fold(f32::INFINITY, f32::min);
         ground::keep_if_any(objects, |object| apart_m(object) <= least_m + NEARER_M);
@@ -184,6 +194,26 @@ impl<'a> Ground<'a> {
         }
     }
 
+    /// Drops machines that are only taken for what was named, where such a one is there: a light switch is the lamp where there is no lamp.
+    fn drop_stand_ins(&self, phrase: &Phrase, base: &mut Vec<&KnownObject>) {
+        let said = format!(" {} ", phrase.text);
+        let is_called_so = |object: &KnownObject| {
+            let class = self.catalog.class(object.class);
+            let mut names = std::iter::once(&class.name).chain(&class.words);
+            names.any(|name| said.contains(&format!(" {} ", name.to_lowercase())))
+        };
+        let is_machine = |object: &KnownObject| self.catalog.class(object.class).has(Property::Toggleable);
+        let room = phrase.room.unwrap_or(self.scene.robot.room);
+        let is_there = |object: &KnownObject| {
+            object.room == room || !phrase.relations.is_empty() && self.is_as_said(phrase, object)
+        };
+        let is_it = |object: &KnownObject| is_machine(object) && is_called_so(object) && is_there(object);
+        if !phrase.namings.is_empty() && base.iter().any(|object| is_it(object)) {
+            let is_carried = |object: &KnownObject| self.catalog.class(object.class).has(Property::Pickupable);
+            base.retain(|object| !is_machine(object) || is_carried(object) || is_called_so(object));
+        }
+    }
+
     fn is_candidate(&self, phrase: &Phrase, object: &KnownObject) -> bool {
         if phrase.is_empty() || phrase.pronoun == Some(Pronoun::One) && phrase.namings.is_empty() {
             // `the red one`: one of the kind spoken of last, or anything that is red.
@@ -229,6 +259,10 @@ impl<'a> Ground<'a> {
     }
 
     pub(crate) fn has_color(&self, object: &KnownObject, color: &str) -> bool {
+        // The catalogue has but one of the colours of a red and white machine.
+        if let Some((one, other)) = color.split_once(BOTH) {
+            return self.has_color(object, one) || self.has_color(object, other);
+        }
         let color_of = describe::color(self.catalog, object);
         if color == "white" && self.is_plain_twin(object) {
             return true;
@@ -287,18 +321,22 @@ impl<'a> Ground<'a> {
                     || self.scene.objects.iter().any(|other| fits(other) && self.stands_by(object, other))
             }
             // What works nothing may be for anything.
-            RelationKind::For => object.works.is_none_or(|worked| self.scene.object(worked).is_some_and(fits)),
+            RelationKind::For => {
+                object.works.is_none_or(|worked| self.scene.object(worked).is_some_and(fits))
+                    || vending::brought_out(self.catalog, self.scene, object).is_some_and(fits)
+            }
             RelationKind::LeftOf | RelationKind::RightOf => self.scene.objects.iter().any(|other| {
                 let is_left = self.scene.bearing_rad(object) > self.scene.bearing_rad(other);
-                fits(other)
-                    && other.room == object.room
+                let is_at_side = other.room == object.room
                     && floor::distance_m(other.position_m, object.position_m) < BESIDE_M
-                    && is_left == (relation.kind == RelationKind::LeftOf)
+                    && is_left == (relation.kind == RelationKind::LeftOf);
+                fits(other) && (is_at_side || other.parent == Some(object.id))
             }),
+            // `on the counter next to the toaster`: the counter on which the toaster stands, however long it is.
             RelationKind::Near => self.scene.objects.iter().any(|other| {
-                fits(other)
-                    && other.room == object.room
-                    && floor::distance_m(other.position_m, object.position_m) < NEAR_M
+                let is_near =
+                    other.room == object.room && floor::distance_m(other.position_m, object.position_m) < NEAR_M;
+                fits(other) && (is_near || other.parent == Some(object.id))
             }),
         }
     }

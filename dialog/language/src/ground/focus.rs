@@ -11,6 +11,9 @@ use crate::{
 /// How many objects a pronoun may reach back.
 const MEMORY: usize = 8;
 
+/// Of how many things it is remembered where they were at first: those of a long session.
+const FIRSTS: usize = 120;
+
 /// What the conversation is about.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Focus {
@@ -29,6 +32,9 @@ pub(crate) struct Focus {
     /// What was taken from the floor, and of which room, the latest first.
     #[serde(default)]
     pub(crate) off_floor: Vec<(ObjectId, RoomId)>,
+    /// Where each thing was before it was taken for the first time; nothing, where it lay on the floor.
+    #[serde(default)]
+    pub(crate) firsts: Vec<(ObjectId, Option<ObjectId>)>,
     /// What was put somewhere last.
     pub(crate) placed: Option<ObjectId>,
     /// Where the robot stood when it last set out, m.
@@ -55,6 +61,10 @@ impl Focus {
                 if taken.parent.is_none() && taken.position_m[2] > ON_FLOOR_M {
                     return;
                 }
+                if self.firsts.iter().all(|(other, _)| *other != object) {
+                    self.firsts.insert(0, (object, taken.parent));
+                    self.firsts.truncate(FIRSTS);
+                }
                 self.origins.retain(|(other, _)| *other != object);
                 self.off_floor.retain(|(other, _)| *other != object);
                 match taken.parent {
@@ -64,7 +74,7 @@ impl Focus {
                 self.origins.truncate(MEMORY);
                 self.off_floor.truncate(MEMORY);
             }
-            Action::Place { .. } => self.placed = scene.robot.held,
+            Action::Place { .. } | Action::PlaceBeside { .. } => self.placed = scene.robot.held,
             _ => {}
         }
     }
@@ -93,7 +103,9 @@ impl Focus {
             }
             Action::GoTo { target: GoToTarget::Room(room) } => (self.place, self.room) = (None, Some(room)),
             Action::GoTo { .. } => (self.place, self.room) = (None, None),
-            Action::Place { receptacle } => (self.place, self.room) = (Some(receptacle), None),
+            Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => {
+                (self.place, self.room) = (Some(receptacle), None);
+            }
             Action::PickUp { object } | Action::Highlight { object } => {
                 if !self.group.contains(&object) {
                     self.group.clear();

@@ -3,7 +3,7 @@
 use cohabit_cdf::{ObjectId, state::StateFlag};
 
 use crate::{
-    ground::{self, Ground, want::Want},
+    ground::{self, Ground, WORSE_NAME, want::Want},
     known::KnownObject,
     read::phrase::Phrase,
     words::{
@@ -14,6 +14,9 @@ use crate::{
 
 /// By how much the volume of what was made bigger is taken to grow.
 const ENLARGED: f32 = 4.0;
+/// What measures less than the most by more than this factor is not said to be so: a lamp on a table is no tall one where another stands
+/// on the floor.
+const LESS_SO: f32 = 1.5;
 
 impl Ground<'_> {
     /// The object that `it`, `there` and such stand for.
@@ -106,6 +109,28 @@ impl Ground<'_> {
         let mut best = left.iter().filter(|object| self.measure(object, side) >= most);
         let one = best.next()?;
         best.next().is_none().then_some(one.id)
+    }
+
+    /// Drops from those that are as described, and from all of the kind, what is much less tall, little or long than the most so of those
+    /// that are called so as much, where that was said.
+    pub(crate) fn drop_of_other_size(
+        &self,
+        phrase: &Phrase,
+        left: &mut Vec<&KnownObject>,
+        base: &mut Vec<&KnownObject>,
+    ) {
+        let weight = |object: &KnownObject| phrase.naming(object.class).unwrap_or(1.0);
+        for side in phrase.sizes.iter().copied() {
+            let best = left.iter().map(|object| weight(object)).fold(0.0, f32::max);
+            let called = left.iter().filter(|object| weight(object) > best - WORSE_NAME);
+            let most = called.map(|object| self.measure(object, side)).fold(f32::NEG_INFINITY, f32::max);
+            // Of what is the more so the smaller it is, the measure is below zero.
+            let enough = if most < 0.0 { most * LESS_SO } else { most / LESS_SO };
+            let is_other = |object: &&&KnownObject| self.measure(object, side) < enough;
+            let dropped: Vec<ObjectId> = left.iter().filter(is_other).map(|object| object.id).collect();
+            left.retain(|object| !dropped.contains(&object.id));
+            base.retain(|object| !dropped.contains(&object.id));
+        }
     }
 
     /// By what things are compared that are said to be more so than others.

@@ -6,7 +6,7 @@ use cohabit_cdf::{
 };
 
 use crate::{
-    known::{Known, KnownObject, floor::distance_m},
+    known::{Known, KnownObject, floor::distance_m, vending},
     read::phrase::Phrase,
 };
 
@@ -209,7 +209,11 @@ pub(crate) fn apart(catalog: &Catalog, scene: &Known, candidates: &[ObjectId]) -
             let place = location(catalog, scene, object.id);
             let fluid =
                 if objects.iter().any(|other| other.fluid != object.fluid) { contents(object.fluid) } else { "" };
-            let text = format!("the {} {} {fluid} {place}", adjectives.join(" "), bare(catalog, scene, object.id));
+            // Buttons look alike, and people want what comes out.
+            let brings = vending::brought_out(catalog, scene, object);
+            let brings = brings.map(|thing| format!("for the {}", bare(catalog, scene, thing.id))).unwrap_or_default();
+            let name = bare(catalog, scene, object.id);
+            let text = format!("the {} {name} {brings} {fluid} {place}", adjectives.join(" "));
             text.split_whitespace().collect::<Vec<_>>().join(" ")
         })
         .collect()

@@ -3,7 +3,7 @@
 
 use cohabit_cdf::{Action, ActionKind, GoToTarget, ObjectId};
 
-use crate::known::{Known, process::Devices, symbols};
+use crate::known::{Known, KnownObject, process::Devices, symbols};
 
 /// How far it stands from what it acts on, m.
 const REACH_M: f32 = 0.8;
@@ -24,10 +24,12 @@ pub(crate) fn apply(scene: &mut Known, action: &Action, devices: &Devices) {
                 scene.objects.iter_mut().for_each(|object| object.visible = false);
             }
         }
-        Action::PickUp { .. } | Action::Place { .. } | Action::Interact { .. } => {
+        Action::PickUp { .. } | Action::Place { .. } | Action::PlaceBeside { .. } | Action::Interact { .. } => {
             if let Some((kind, object)) = ActionKind::of(action) {
+                let held = scene.robot.held;
                 walk(scene, object);
                 symbols::act(scene, kind, object, &devices.catalog);
+                stand_beside(scene, held, action);
             }
         }
         Action::GoTo { .. }
@@ -36,6 +38,16 @@ pub(crate) fn apply(scene: &mut Known, action: &Action, devices: &Devices) {
         | Action::Highlight { .. }
         | Action::Stop
         | Action::Drive { .. } => {}
+    }
+}
+
+/// What was put beside another thing is where that is, as near as can be told.
+fn stand_beside(scene: &mut Known, put: Option<ObjectId>, action: &Action) {
+    let beside = action.beside().and_then(|beside| scene.object(beside));
+    let Some(position_m) = beside.map(|beside| beside.position_m) else { return };
+    let is_put = |object: &&mut KnownObject| object.parent.is_some() && object.parent == action.receptacle();
+    if let Some(object) = put.and_then(|put| scene.object_mut(put)).filter(is_put) {
+        object.position_m = position_m;
     }
 }
 
@@ -67,7 +79,7 @@ fn carry(scene: &mut Known) {
 pub(crate) const fn object_of(action: &Action) -> Option<ObjectId> {
     match *action {
         Action::PickUp { object } | Action::Interact { object, .. } | Action::Highlight { object } => Some(object),
-        Action::Place { receptacle } => Some(receptacle),
+        Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => Some(receptacle),
         Action::GoTo { target: cohabit_cdf::GoToTarget::Object(object) } => Some(object),
         _ => None,
     }

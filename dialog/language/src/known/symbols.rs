@@ -9,6 +9,7 @@ use cohabit_cdf::{
     ActionKind, Catalog, ObjectId, Property,
     state::{StateFlag, StateFlags},
     symbolic::{Place, SymbolicState, Thing},
+    table::Need,
 };
 
 use crate::known::{Known, KnownObject};
@@ -25,6 +26,17 @@ pub(crate) fn act(scene: &mut Known, kind: ActionKind, object: ObjectId, catalog
             note(scene, index, was, is);
         }
     }
+}
+
+/// What an action on an object lacks by the table, as far as is known; nothing, where nothing of it is known to be lacking.
+pub(crate) fn lack<'c>(
+    scene: &Known,
+    kind: ActionKind,
+    object: ObjectId,
+    catalog: &'c Arc<Catalog>,
+) -> Option<&'c Need> {
+    let it = number(scene, object)?;
+    catalog.table().judge(&symbols(scene, catalog), kind, it)?.lack
 }
 
 /// Takes over what is other than it was about the object at that place in the list.

@@ -4,7 +4,7 @@ use cohabit_cdf::{Action, ClassId, ObjectClass, ObjectId, Property, RoomId, Verb
 
 use crate::{
     ground::want::Want,
-    known::KnownObject,
+    known::{KnownObject, vending},
     plan::{
         Fault, Planner,
         settle::{Goal, Settled},
@@ -108,10 +108,21 @@ impl Planner<'_> {
             }
             None => {}
         }
+        self.bring_out(object);
         self.open_around(object, false);
         let says = format!("picking up {}", self.the(object));
         self.push(Action::PickUp { object }, says);
         Ok(())
+    }
+
+    /// What stands behind the glass of a vending machine no hand gets at: its button brings it out.
+    fn bring_out(&mut self, object: ObjectId) {
+        let thing = self.scene.object(object);
+        let button = thing.and_then(|thing| vending::button_for(self.catalog, &self.scene, thing));
+        if let Some(button) = button.map(|button| button.id) {
+            self.notes.push(format!("{} is behind the glass, so I press its button first", self.the(object)));
+            self.interact(Verb::Toggle, button, "pressing");
+        }
     }
 
     /// Holds the object for what comes next, without a word if it is in the hand already.
@@ -130,10 +141,7 @@ impl Planner<'_> {
     }
 
     pub(crate) fn place_on(&mut self, receptacle: ObjectId) {
-        self.open_around(receptacle, true);
-        let held = self.scene.robot.held.map_or_else(|| "it".to_owned(), |held| self.the(held));
-        let says = format!("putting {held} {} {}", self.preposition(receptacle), self.the(receptacle));
-        self.push(Action::Place { receptacle }, says);
+        self.place_beside(receptacle, None);
     }
 
     pub(crate) fn preposition(&self, receptacle: ObjectId) -> &'static str {
@@ -162,7 +170,7 @@ impl Planner<'_> {
         fits.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.id.cmp(&b.id))).map(|object| object.id)
     }
 
-    fn is_table(&self, object: &KnownObject) -> bool {
+    pub(super) fn is_table(&self, object: &KnownObject) -> bool {
         is_table(self.catalog.class(object.class)) && self.has_room(object)
     }
 
@@ -174,7 +182,7 @@ impl Planner<'_> {
     }
 
     /// The classes of the catalogue for which `fits` holds.
-    fn classes(&self, fits: impl Fn(ClassId) -> bool) -> Vec<ClassId> {
+    pub(super) fn classes(&self, fits: impl Fn(ClassId) -> bool) -> Vec<ClassId> {
         (0..).map(ClassId).take(self.catalog.classes().len()).filter(|class| fits(*class)).collect()
     }
 
@@ -208,7 +216,7 @@ impl Planner<'_> {
             return Ok(());
         }
         match &settled.goal {
-            None if settled.is_back => self.put_back(object),
+            None if settled.is_back => self.put_where_it_was(object),
             None if settled.is_stored => self.put_away(&[object]),
             None if settled.intent == Intent::Bring => {
                 let is_held = self.scene.robot.held == Some(object);
@@ -241,7 +249,7 @@ impl Planner<'_> {
         let objects = self.carried(found)?;
         // `put them back`: each where it was taken from.
         if settled.is_back && settled.goal.is_none() {
-            return objects.into_iter().try_for_each(|object| self.put_back(object));
+            return objects.into_iter().try_for_each(|object| self.put_where_it_was(object));
         }
         if settled.is_stored && settled.goal.is_none() {
             self.ask_what_is_cleared(settled)?;
@@ -272,8 +280,9 @@ impl Planner<'_> {
 
     /// Whether this plan empties the hand.
     fn has_put_down(&self) -> bool {
-        let puts_down =
-            |step: &Step| matches!(step.action, Action::Place { .. } | Action::Interact { verb: Verb::Throw, .. });
+        let puts_down = |step: &Step| {
+            step.action.receptacle().is_some() || matches!(step.action, Action::Interact { verb: Verb::Throw, .. })
+        };
         self.scene.robot.held.is_none() && self.steps.iter().any(puts_down)
     }
 
@@ -292,12 +301,9 @@ impl Planner<'_> {
         match &goal.place {
             Place::Object(phrase) if phrase.is_floor => self.offer_surface(object),
             Place::Object(phrase) => {
-                let target = self.find_target(phrase, goal, object, settled)?;
-                let is_there = self.scene.object(object).is_some_and(|known| known.parent == Some(target));
-                // `bring it to the microwave and put it in` is one errand.
-                let is_done = is_there
-                    && self.steps.last().is_some_and(|step| step.action == Action::Place { receptacle: target });
-                if is_done || is_there && settled.objects.iter().any(|phrase| phrase.is_all) {
+                let (target, beside) = self.find_target(phrase, goal, object, settled)?;
+                let is_of_all = settled.objects.iter().any(|phrase| phrase.is_all);
+                if self.is_put_there(object, target, beside, is_of_all) {
                     return Ok(());
                 }
                 if target == object && self.scene.robot.held == Some(object) {
@@ -307,11 +313,14 @@ impl Planner<'_> {
                 if target == object {
                     return Err(Fault::Cannot(format!("I cannot put {} on itself.", self.the(object))));
                 }
-                if !self.has(target, Property::Receptacle) && self.has(target, Property::Fillable) {
+                if beside.is_none() && !self.has(target, Property::Receptacle) && self.has(target, Property::Fillable) {
                     return self.pour(object, target);
                 }
                 self.hold(object)?;
-                self.place_on(target);
+                // What was in the hand stands somewhere now.
+                let stand = beside.filter(|other| *other == target).and_then(|other| self.stand_of(other, object));
+                let target = stand.unwrap_or(target);
+                self.place_beside(target, beside.filter(|other| *other != target));
                 Ok(())
             }
             Place::Room(room) if !self.scene.may_have_room(room.id) => {
@@ -346,28 +355,6 @@ impl Planner<'_> {
         self.hold(object)?;
         self.go_to_room(room);
         if intent == Intent::Bring { Ok(()) } else { self.put_down(None) }
-    }
-
-    /// Where to put it; `next to the lamp` is where the lamp stands.
-    fn find_target(
-        &self,
-        phrase: &Phrase,
-        goal: &Goal,
-        object: ObjectId,
-        settled: &Settled,
-    ) -> Result<ObjectId, Fault> {
-        let is_beside = matches!(goal.preposition, Preposition::Near | Preposition::LeftOf | Preposition::RightOf);
-        let affordances: &[Property] = if is_beside { &[] } else { TAKES };
-        // `on the counter` is its top, rather than one with doors.
-        let open = match goal.preposition {
-            Preposition::On => self.classes(|class| !self.catalog.class(class).has(Property::Openable)),
-            _ => Vec::new(),
-        };
-        let origin = self.taken_from(object).filter(|_| !is_beside && !settled.is_back);
-        let want = Want { classes: &open, origin, ..Want::place(settled.intent, affordances, Some(object)) };
-        let target = self.find_one(phrase, &want, Some(goal.role))?;
-        let parent = self.scene.object(target).and_then(|target| target.parent);
-        Ok(parent.filter(|_| is_beside).unwrap_or(target))
     }
 
     /// What a thing is on or in, or was when it was taken.
@@ -451,7 +438,7 @@ impl Planner<'_> {
 }
 
 /// A table, desk or counter: open, of some size, and no machine.
-fn is_table(class: &ObjectClass) -> bool {
+pub(super) fn is_table(class: &ObjectClass) -> bool {
     let is_machine = [Property::Pickupable, Property::Toggleable, Property::Powerable, Property::Openable]
         .into_iter()
         .any(|property| class.has(property));

@@ -4,7 +4,7 @@ use cohabit_cdf::{Action, ObjectId, Property, Verb, state::StateFlag};
 
 use crate::{
     ground::want::{Miss, Want},
-    known::Known,
+    known::{Known, describe},
     plan::{
         Fault, Planner,
         settle::{self, Settled},
@@ -18,6 +18,7 @@ use crate::{
     words::{
         intent::Intent,
         lexicon::{Manner, Preposition, Side},
+        prose,
     },
 };
 
@@ -76,7 +77,7 @@ impl Planner<'_> {
                     let Some(falls) = falls else {
                         return Err(self.impossible(impossible, &clauses[index + 1..]));
                     };
-                    self.steps.truncate(self.begun.0);
+                    self.take_back_to(self.begun.0);
                     self.focus = self.begun.1.clone();
                     before.into_iter().for_each(|scene| self.scene = scene);
                     fallen.extend(falls);
@@ -89,9 +90,28 @@ impl Planner<'_> {
         if self.steps.is_empty() && (!impossible.is_empty() || !self.fixed.is_empty()) {
             return Err(self.impossible(impossible, &[]));
         }
+        self.leave_running();
         self.left_out = self.why_left_out(impossible);
         self.notes.extend(self.left_out.iter().map(|why| why.trim_end_matches('.').to_owned()));
         Ok(())
+    }
+
+    /// Drops all steps but the first few.
+    fn take_back_to(&mut self, count: usize) {
+        self.steps.truncate(count);
+        self.turned_off.retain(|at| *at < count);
+    }
+
+    /// `wash the mug and fill it`: what would be turned off and at once on again is left running.
+    fn leave_running(&mut self) {
+        // From the last on, so that those before keep their places.
+        for at in std::mem::take(&mut self.turned_off).into_iter().rev() {
+            if let Some([off, on, ..]) = self.steps.get(at..)
+                && off.action == on.action
+            {
+                self.steps.drain(at..at + 2);
+            }
+        }
     }
 
     /// That none of a request can be done: why, of the clauses that follow, too, where things cannot be carried.
@@ -106,7 +126,7 @@ impl Planner<'_> {
     fn drop_known_means(&mut self, scene: Known) {
         let (asked, means) = self.steps.split_at(self.begun.0);
         if means.iter().all(|step| asked.iter().any(|other| other.action == step.action)) {
-            self.steps.truncate(self.begun.0);
+            self.take_back_to(self.begun.0);
             self.scene = scene;
         }
     }
@@ -187,12 +207,25 @@ impl Planner<'_> {
     pub(crate) fn find_objects(&mut self, settled: &Settled, want: &Want<'_>) -> Result<Vec<ObjectId>, Fault> {
         let mut found = Vec::new();
         for (index, phrase) in settled.objects.iter().enumerate() {
-            found.extend(self.find_each(phrase, want, Some(Role::Object(index)))?);
+            let each = self.find_each(phrase, want, Some(Role::Object(index)))?;
+            self.note_too_few(phrase, &each);
+            found.extend(each);
         }
         if found.len() > 1 {
             self.focus.group.clone_from(&found);
         }
         Ok(found)
+    }
+
+    /// That it knows of fewer than were asked for: those it does, and more it looks for if somebody says so.
+    fn note_too_few(&mut self, phrase: &Phrase, found: &[ObjectId]) {
+        let is_enough = phrase.count.is_none_or(|count| found.len() >= usize::from(count));
+        let first = found.first().and_then(|id| self.scene.object(*id)).filter(|_| !is_enough);
+        if let Some(first) = first {
+            let name = describe::name(self.catalog, first.class);
+            let known = if found.len() == 1 { format!("one {name}") } else { prose::counted(&name, found.len()) };
+            self.notes.push(format!("I know of only {known}: tell me to look for another"));
+        }
     }
 
     /// Whether a clause is about more than one object.
@@ -235,8 +268,11 @@ impl Planner<'_> {
             None => self.find_objects(settled, &Want::object(settled.intent))?,
         };
         for object in objects {
+            if !self.has(object, Property::Openable) {
+                return Err(Fault::Cannot(self.why_not_a_door(object, settled.intent)));
+            }
             let is_open = self.scene.object(object).is_some_and(|object| object.has(StateFlag::Opened));
-            if is_open == opens && self.has(object, Property::Openable) {
+            if is_open == opens {
                 let state = if opens { "open" } else { "closed" };
                 self.focus.mention(object);
                 self.notes.push(format!("{} is already {state}", self.the(object)));
@@ -250,6 +286,13 @@ impl Planner<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Why this is neither opened nor closed: the world would refuse it.
+    fn why_not_a_door(&self, object: ObjectId, intent: Intent) -> String {
+        let the = self.the(object);
+        let they = if prose::is(&the) == "is" { "it is" } else { "they are" };
+        format!("I cannot {} {the}: {they} not made to be opened and closed.", intent.verb())
     }
 
     /// Goes out by a door: it is shut from the room where the robot is then.

@@ -76,6 +76,7 @@ impl Planner<'_> {
             return Ok(());
         }
         if wanted != Some(false) {
+            self.fill_to_run(worker)?;
             self.shut_to_run(worker);
         }
         let participle = match wanted {

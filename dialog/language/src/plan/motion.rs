@@ -15,6 +15,7 @@ use crate::{
     words::{
         intent::Intent,
         lexicon::{Direction, NamedRoom, Preposition, Pronoun, Side},
+        prose,
     },
 };
 
@@ -130,7 +131,8 @@ impl Planner<'_> {
             match self.find_one(phrase, &want, Some(Role::Object(index))) {
                 Ok(object) => self.go_to_object(object),
                 Err(Fault::Miss { miss: Miss::Unseen, .. }) if is_nameable && self.looks_about() => {
-                    self.notes.push(format!("I have not seen {} yet, so I look around for it", saying::said(phrase)));
+                    let said = saying::said(phrase);
+                    self.notes.push(format!("I have not seen {said} yet, so I look around for {}", prose::it(&said)));
                     phrase.room.into_iter().for_each(|room| self.go_to_room(room));
                     self.push(Action::LookAround, "looking around".to_owned());
                 }

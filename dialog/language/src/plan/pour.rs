@@ -14,7 +14,7 @@ use crate::{
         phrase::{Phrase, Place, RelationKind},
         slot::Role,
     },
-    words::{intent::Intent, lexicon::Preposition},
+    words::{intent::Intent, lexicon::Preposition, prose},
 };
 
 impl Planner<'_> {
@@ -136,6 +136,44 @@ impl Planner<'_> {
         if self.is_empty_twin(source, target) {
             return Err(Fault::Cannot(format!("There is nothing in {} to pour.", self.the(source))));
         }
+        if self.is_full(target) && self.has(source, Property::Fillable) {
+            return self.offer_to_empty(source, target);
+        }
+        self.tip(source, target)
+    }
+
+    /// Whether nothing more goes into it; what is poured into a basin runs off.
+    fn is_full(&self, target: ObjectId) -> bool {
+        let is_basin = |class| self.catalog.table().is_basin(&self.catalog.class(class).id);
+        self.scene.object(target).is_some_and(|known| known.fluid != Fluid::None && !is_basin(known.class))
+    }
+
+    /// That something is full already, and what it takes to pour into it all the same.
+    fn offer_to_empty(&mut self, source: ObjectId, target: ObjectId) -> Result<(), Fault> {
+        let full = prose::sentence(&format!("{} is full already", self.the(target)));
+        if !self.has(target, Property::Pickupable) {
+            return Err(Fault::Cannot(full));
+        }
+        self.empty(target)?;
+        self.tip(source, target)?;
+        let text = format!("{full} Shall I empty it first?");
+        Err(Fault::Offer { text, steps: std::mem::take(&mut self.steps) })
+    }
+
+    /// Pours away what is in a vessel, and has that back where it was, and in the hand what was there before.
+    pub(super) fn empty(&mut self, vessel: ObjectId) -> Result<(), Fault> {
+        let (held, stood_on) = (self.scene.robot.held, self.taken_from(vessel));
+        let sink = self.nearest_sink()?;
+        self.tip(vessel, sink)?;
+        if held == Some(vessel) {
+            return Ok(());
+        }
+        stood_on.into_iter().for_each(|place| self.place_on(place));
+        held.map_or(Ok(()), |held| self.hold(held))
+    }
+
+    /// Takes something, and pours what is in it into something else.
+    fn tip(&mut self, source: ObjectId, target: ObjectId) -> Result<(), Fault> {
         self.hold(source)?;
         self.open_around(target, false);
         let says = format!("pouring {} into {}", self.what_is_in(source), self.the(target));

@@ -4,7 +4,10 @@ use cohabit_cdf::{Action, ActionKind, ClassId, Fluid, ObjectId, Property, Verb, 
 
 use crate::{
     ground::want::{Miss, Want},
-    known::process::{Act, Process},
+    known::{
+        KnownObject, describe,
+        process::{Act, Process},
+    },
     plan::{
         Fault, Planner,
         settle::{Goal, Settled},
@@ -76,11 +79,43 @@ impl Planner<'_> {
             if is_once && self.brought_about.contains(&(settled.intent, object)) {
                 continue;
             }
+            let chosen = self.choose_process(&settled, object);
+            // Who names a machine wants it to run.
+            let process = chosen.as_ref().ok().map(|(process, _)| process);
+            let is_put_in = process.is_some_and(|process| process.steps.contains(&Act::Place));
+            let fluid = settled.fluid.or_else(|| process.and_then(|process| process.fluid));
+            let is_named = settled.goal.is_some() || settled.tool.is_some();
+            if let Some(state) = self.is_so_already(settled.intent, fluid, object).filter(|_| !(is_named && is_put_in)) {
+                let the = self.the(object);
+                self.notes.push(format!("{the} {} {state} already", prose::is(&the)));
+                self.focus.mention(object);
+                continue;
+            }
             self.brought_about.push((settled.intent, object));
-            let (process, place) = self.choose_process(&settled, object)?;
+            let (process, place) = chosen?;
             self.carry_out(&process, object, place, settled.color.as_deref())?;
         }
         Ok(())
+    }
+
+    /// What a thing is already that is asked for: there is nothing to do about it, and what is tried all the same fails. Of what cannot be
+    /// carried why not is told instead.
+    fn is_so_already(&self, intent: Intent, fluid: Option<Fluid>, object: ObjectId) -> Option<&'static str> {
+        let known = self.scene.object(object).filter(|_| self.has(object, Property::Pickupable))?;
+        match intent {
+            // What is in it is to be rinsed out.
+            Intent::Clean if !known.has(StateFlag::Dirty) && known.fluid == Fluid::None => Some("clean"),
+            Intent::Dry if !known.has(StateFlag::Wet) => Some("dry"),
+            Intent::Fold if known.has(StateFlag::Folded) => Some("folded"),
+            Intent::Fill if known.fluid != Fluid::None && fluid.is_none_or(|fluid| fluid == known.fluid) => Some("full"),
+            _ => None,
+        }
+    }
+
+    /// Turns off what was turned on for what is done now, and need not be if it is turned on again next.
+    fn turn_off_again(&mut self, place: ObjectId) {
+        self.turned_off.push(self.steps.len());
+        self.interact(Verb::Toggle, place, "turning off");
     }
 
     /// `heat the mug on the table`: the table is no device, so it says where the mug is.
@@ -135,6 +170,13 @@ impl Planner<'_> {
         // `boil the water in the kettle`: the kettle, with what is in it.
         let vessel = phrase.relations.iter().find(|relation| relation.kind == RelationKind::Inside);
         let vessel = vessel.filter(|_| phrase.fluid.is_some()).map(|relation| &relation.to);
+        if vessel.is_none()
+            && settled.intent == Intent::Heat
+            && phrase.fluid == Some(Fluid::Water)
+            && let Some(boiler) = self.boiler()
+        {
+            return Ok(boiler);
+        }
         let object = self.find_one(vessel.unwrap_or(phrase), &want, role)?;
         if !self.has(object, Property::Pickupable) && !Intent::BY_HAND.contains(&settled.intent) {
             let (verb, the) = (settled.intent.verb(), self.the(object));
@@ -155,7 +197,8 @@ impl Planner<'_> {
         }
         self.nearest(&classes).ok_or_else(|| {
             let said = crate::read::saying::said(phrase);
-            self.need(&classes, format!("I do not know how to make {said}: I have seen no cartridge for it."))
+            let it = prose::it(&said);
+            self.need(&classes, format!("I do not know how to make {said}: I have seen no cartridge for {it}."))
         })
     }
 
@@ -226,7 +269,7 @@ impl Planner<'_> {
         let mut fitting: Vec<&Process> = all.iter().copied().filter(fits).collect();
         fitting.sort_by_key(|process| (!process.at.is_empty(), !process.suits.contains(&class)));
         if fitting.is_empty() && !all.is_empty() {
-            return Err(Fault::Cannot(format!("I cannot {} {}.", intent.verb(), self.the(object))));
+            return Err(Fault::Cannot(self.misfit(&all, intent, object)));
         }
         let place = |process: &Process| match process.at.as_slice() {
             [] => Some(object),
@@ -239,9 +282,41 @@ impl Planner<'_> {
         })
     }
 
+    /// That something cannot be done to a thing, and why: what the machine for it takes alone, and that a slice of the thing is such.
+    fn misfit(&self, all: &[&Process], intent: Intent, object: ObjectId) -> String {
+        let (verb, the) = (intent.verb(), self.the(object));
+        let places = all.iter().filter(|process| process.steps.contains(&Act::Place)).flat_map(|process| &process.at);
+        let mut keyed = places.filter_map(|place| {
+            let keys = &self.catalog.class(*place).receptacle.as_ref()?.keys;
+            let mut keys: Vec<ClassId> = keys.iter().filter_map(|key| self.catalog.find(key)).collect();
+            keys.dedup();
+            Some((self.nearest(&[*place])?, keys)).filter(|(_, keys)| !keys.is_empty())
+        });
+        let Some((machine, keys)) = keyed.next() else { return format!("I cannot {verb} {the}.") };
+        let names: Vec<String> = keys.iter().map(|key| prose::plural(&describe::name(self.catalog, *key))).collect();
+        let why = format!("I cannot {verb} {the}: {} takes only {}.", self.the(machine), prose::list(&names, "and"));
+        let class = self.scene.object(object).map(|known| known.class).unwrap_or_default();
+        let slice =
+            self.catalog.table().slice(&self.catalog.class(class).id).and_then(|slice| self.catalog.find(slice));
+        match slice.filter(|slice| keys.contains(slice)) {
+            Some(_) => format!("{why} Tell me to cut {}, and I can {verb} a slice of it.", prose::it(&the)),
+            None => why,
+        }
+    }
+
     /// Ways in which things bring something about in themselves, as a kettle boils its water.
     pub(crate) fn in_itself(&self, intent: Intent) -> impl Iterator<Item = &Process> {
         self.processes(intent, None).filter(|process| process.at.is_empty())
+    }
+
+    /// What boils water, for `boil some water`, where nothing that can be carried has any in it yet.
+    fn boiler(&self) -> Option<ObjectId> {
+        let has_water = |known: &KnownObject| known.fluid == Fluid::Water && self.has(known.id, Property::Pickupable);
+        if self.scene.objects.iter().any(has_water) {
+            return None;
+        }
+        let boilers: Vec<ClassId> = self.in_itself(Intent::Tea).flat_map(|process| process.of.clone()).collect();
+        self.nearest(&boilers)
     }
 
     /// Has a kettle boil its water.
@@ -302,13 +377,13 @@ impl Planner<'_> {
                     self.interact(*verb, object, process.intent.doing());
                 }
                 Act::Rest => {
-                    self.interact(Verb::Toggle, place, "turning off");
+                    self.turn_off_again(place);
                     // What it was done to is spoken of, not the tool.
                     self.focus.mention(object);
                 }
                 // What ran before is left running.
                 Act::RunNoMore if runs_for_it => {
-                    self.interact(Verb::Toggle, place, "turning off");
+                    self.turn_off_again(place);
                     self.focus.mention(object);
                 }
                 Act::RunNoMore => {}
@@ -317,10 +392,25 @@ impl Planner<'_> {
         Ok(())
     }
 
+    /// A kettle boils nothing while it is empty: the wish to run it implies filling it.
+    pub(super) fn fill_to_run(&mut self, machine: ObjectId) -> Result<(), Fault> {
+        let Some(known) = self.scene.object(machine).filter(|known| known.fluid == Fluid::None) else { return Ok(()) };
+        let is_filled_for_it =
+            |process: &Process| process.steps.contains(&Act::FillFirst) && process.of.contains(&known.class);
+        if self.devices.processes.iter().any(is_filled_for_it) {
+            let the = self.the(machine);
+            self.fill_first(machine)?;
+            self.notes.push(format!("{the} is empty, so I fill it first"));
+        }
+        Ok(())
+    }
+
     /// Fills what is empty, and puts it back where it was.
-    fn fill_first(&mut self, object: ObjectId) -> Result<(), Fault> {
-        let Some(known) = self.scene.object(object).filter(|known| known.fluid == Fluid::None) else { return Ok(()) };
-        let stood_on = known.parent;
+    pub(super) fn fill_first(&mut self, object: ObjectId) -> Result<(), Fault> {
+        if self.scene.object(object).is_none_or(|known| known.fluid != Fluid::None) {
+            return Ok(());
+        }
+        let stood_on = self.taken_from(object);
         self.fill(object, Fluid::Water)?;
         stood_on.into_iter().for_each(|place| self.place_on(place));
         Ok(())

@@ -177,13 +177,27 @@ impl Settled {
     fn take_place(&mut self, planner: &Planner<'_>, preposition: Preposition, place: &Place, role: Role) {
         let goal = || Some(Goal { preposition, place: place.clone(), role });
         let is_generic = self.intent == Intent::Bring && self.is_generic();
+        let is_beside = |phrase: &Phrase| self.stands_beside(planner, preposition, phrase, Preposition::To);
+        let is_described = self.intent == Intent::Bring && matches!(place, Place::Object(phrase) if is_beside(phrase));
         match (&mut self.goal, place) {
             // `put it in the kitchen on the table`
             (Some(Goal { place: Place::Room(room), .. }), Place::Object(phrase)) => {
                 let phrase = Phrase { room: Some(room.id), ..phrase.clone() };
                 self.goal = Some(Goal { preposition, place: Place::Object(phrase), role });
             }
-            (Some(Goal { place: Place::Object(phrase), .. }), _) if preposition == Preposition::Near => {
+            (Some(Goal { preposition: first, place: Place::Object(phrase), .. }), Place::Object(_))
+                if first.is_beside() && !preposition.is_beside() =>
+            {
+                let (before, first) = (phrase.clone(), *first);
+                // `put the cup next to the sink on the table`
+                if self.stands_beside(planner, first, &before, preposition) && !is_there(planner, &before, place) {
+                    self.describe_object(first, &Place::Object(before));
+                    self.goal = goal();
+                } else {
+                    phrase_of(&mut self.goal).into_iter().for_each(|phrase| phrase.attach(preposition, place.clone()));
+                }
+            }
+            (Some(Goal { place: Place::Object(phrase), .. }), _) if preposition.is_beside() => {
                 phrase.attach(preposition, place.clone());
             }
             (Some(Goal { place: Place::Object(phrase), .. }), Place::Object(_)) => {
@@ -210,6 +224,8 @@ impl Settled {
             {
                 self.describe_object(preposition, place);
             }
+            // `bring me the cup next to the sink`
+            (None, Place::Object(_)) if is_described => self.describe_object(preposition, place),
             // `bring me the thing on the desk`
             (None, _) if is_generic && preposition != Preposition::To => {
                 self.describe_object(preposition, place);
@@ -227,6 +243,26 @@ impl Settled {
         there.attach(Preposition::On, Place::Object(place.clone()));
         matches!(planner.ground().one(&there, &Want::object(self.intent)), Ok(_) | Err(Miss::Several(_)))
     }
+
+    /// Whether the object is known to be beside what `place` means, so that `next to the sink` may say which one it is, and what
+    /// stands after that where it goes.
+    fn stands_beside(&self, planner: &Planner<'_>, beside: Preposition, place: &Phrase, then: Preposition) -> bool {
+        if !beside.is_beside() || !matches!(then, Preposition::On | Preposition::In | Preposition::To) {
+            return false;
+        }
+        let Some(object) = self.objects.last().filter(|object| object.pronoun.is_none()) else { return false };
+        let mut there = object.clone();
+        there.attach(beside, Place::Object(place.clone()));
+        matches!(planner.ground().one(&there, &Want::object(self.intent)), Ok(_) | Err(Miss::Several(_)))
+    }
+}
+
+/// Whether what `phrase` means is known to be on or in a place: `the plate on the table`.
+fn is_there(planner: &Planner<'_>, phrase: &Phrase, place: &Place) -> bool {
+    let mut there = phrase.clone();
+    there.attach(Preposition::On, place.clone());
+    let want = Want::place(Intent::Place, &[], None);
+    matches!(planner.ground().one(&there, &want), Ok(_) | Err(Miss::Several(_)))
 }
 
 fn phrase_of(goal: &mut Option<Goal>) -> Option<&mut Phrase> {

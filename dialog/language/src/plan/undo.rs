@@ -35,7 +35,7 @@ impl Planner<'_> {
             Action::Rotate { yaw_rad } => self.rotate(-yaw_rad.to_degrees(), false),
             Action::GoTo { .. } => self.go_back()?,
             Action::PickUp { object } if self.scene.robot.held == Some(object) => self.put_back(object)?,
-            Action::Place { receptacle } => {
+            Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => {
                 let last = self.focus.placed.filter(|placed| self.is_in(*placed, receptacle));
                 let placed = last.ok_or_else(|| self.cannot_undo(step))?;
                 // Where it was taken from at first is where it goes back to.
@@ -102,6 +102,28 @@ impl Planner<'_> {
             }
             return Err(Fault::Cannot(format!("I do not remember where {the} was. Tell me where to put it.")));
         };
+        self.put_at(object, origin)
+    }
+
+    /// Puts an object where it was before it was taken: what it was only put into to have something done to it is no such place.
+    pub(crate) fn put_where_it_was(&mut self, object: ObjectId) -> Result<(), Fault> {
+        let last = self.focus.origins.iter().find(|(taken, _)| *taken == object).map(|(_, last)| *last);
+        let first = self.focus.firsts.iter().find(|(taken, _)| *taken == object).and_then(|(_, first)| *first);
+        match first.filter(|first| self.has(*first, Property::Receptacle)) {
+            Some(first) if last.is_some_and(|last| self.is_station(last)) => self.put_at(object, first),
+            _ => self.put_back(object),
+        }
+    }
+
+    /// Whether things are put there to have something done to them: a machine that works on what it holds, or a basin.
+    fn is_station(&self, place: ObjectId) -> bool {
+        self.scene.object(place).is_some_and(|known| {
+            let (table, class) = (self.catalog.table(), &self.catalog.class(known.class).id);
+            table.device(class).work.is_some() || table.is_basin(class)
+        })
+    }
+
+    fn put_at(&mut self, object: ObjectId, origin: ObjectId) -> Result<(), Fault> {
         if self.is_in(object, origin) {
             let place = describe::full(self.catalog, &self.scene, object);
             self.notes.push(format!("{place} is where I took it from"));

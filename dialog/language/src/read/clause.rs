@@ -142,7 +142,10 @@ pub(crate) fn joined(clauses: Vec<Clause>) -> Vec<Clause> {
     for mut clause in clauses {
         let says_them = |phrase: &Phrase| phrase.pronoun == Some(Pronoun::Things);
         let is_errand = matches!(clause.intent, Intent::Place | Intent::Bring) && clause.objects.iter().all(says_them);
-        let gathers = |before: &mut Clause| before.intent == Intent::PickUp && before.objects.len() > 1;
+        let gathers = |before: &mut Clause| {
+            let is_several = before.objects.len() > 1 || before.objects.iter().any(|phrase| phrase.is_all);
+            before.intent == Intent::PickUp && is_several
+        };
         if is_errand && let Some(before) = joined.pop_if(gathers) {
             clause.objects = before.objects;
         }

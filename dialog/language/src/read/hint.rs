@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     read::{
-        phrase::{Phrase, Place},
+        phrase::{Phrase, Place, RelationKind},
         reader::Reader,
     },
     words::{
@@ -186,7 +186,7 @@ fn places(reader: &mut Reader<'_>) -> Option<Vec<Phrase>> {
     loop {
         let (mut one, mut preposition) = (Phrase::default(), before);
         while let Some((said, place)) = place(reader, preposition.take()) {
-            one.attach(said, place);
+            add_place(&mut one, said, place);
             before = Some(said);
             let mut next = *reader;
             skip_guesses(&mut next);
@@ -206,6 +206,16 @@ fn places(reader: &mut Reader<'_>) -> Option<Vec<Phrase>> {
         }
         skip_guesses(&mut next);
         reader.at = next.at;
+    }
+}
+
+/// What stands by the place that was named before it says which place that is: `on the little table by the sofa`.
+fn add_place(one: &mut Phrase, preposition: Preposition, place: Place) {
+    let is_by = preposition == Preposition::Near || preposition == Preposition::At;
+    let named = one.relations.last_mut().filter(|last| last.kind == RelationKind::Inside && !last.to.is_floor);
+    match named {
+        Some(last) if is_by && matches!(place, Place::Object(_)) => last.to.attach(preposition, place),
+        _ => one.attach(preposition, place),
     }
 }
 
@@ -256,6 +266,15 @@ mod tests {
             assert_eq!(places_found, places, "{said}: {found:?}");
             assert!(places == 0 || found.as_ref().unwrap().0 == rest, "{said}: {found:?}");
         }
+    }
+
+    #[test]
+    fn what_stands_by_a_place_says_which_place_that_is() {
+        let said = "find the mug. I rather think I left it on the little table by the sink";
+        let (rest, hint) = parts_of(said).unwrap();
+        assert_eq!((rest.as_str(), hint.places.len(), hint.places[0].relations.len()), ("find the mug.", 1, 1));
+        let table = &hint.places[0].relations[0];
+        assert_eq!((table.kind, table.to.relations[0].kind), (RelationKind::Inside, RelationKind::Near));
     }
 
     #[test]

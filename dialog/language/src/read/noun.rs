@@ -3,7 +3,10 @@
 use cohabit_cdf::RoomId;
 
 use crate::{
-    read::{phrase::Phrase, reader::Reader},
+    read::{
+        phrase::{BOTH, Phrase},
+        reader::Reader,
+    },
     words::{
         lexicon::{Naming, Pronoun, Side},
         token,
@@ -146,6 +149,10 @@ impl<'a> Reader<'a> {
             phrase.room = Some(room);
             return step(self, length);
         }
+        if let Some((length, colors)) = self.two_colors() {
+            phrase.color = Some(colors);
+            return step(self, length);
+        }
         if let Some((length, color)) = lexicon.colors.longest(rest)
             && length > noun
         {
@@ -170,6 +177,9 @@ impl<'a> Reader<'a> {
             phrase.ordinal = Some(*ordinal);
             return step(self, length);
         }
+        // Each of these is one of the adjectives, too, which are stepped over below.
+        let size = lexicon.sizes.longest(rest).filter(|(length, _)| *length > noun && rest.len() > *length);
+        phrase.sizes.extend(size.map(|(_, side)| *side));
         let filler = lexicon.articles.longest(rest).or_else(|| lexicon.adjectives.longest(rest));
         if let Some((length, ())) = filler
             && length > noun
@@ -184,6 +194,27 @@ impl<'a> Reader<'a> {
             return step(self, 1);
         }
         false
+    }
+
+    /// `red and white`, of one machine: how many words say so, and both colours. `the red and blue desks` are two desks.
+    fn two_colors(&self) -> Option<(usize, String)> {
+        let (rest, lexicon) = (self.rest(), self.lexicon);
+        let (first, one) = lexicon.colors.longest(rest)?;
+        let behind = rest.get(first + 1..).filter(|_| rest[first] == "and")?;
+        let (second, other) = lexicon.colors.longest(behind)?;
+        let name = |words: &[String]| lexicon.classes.longest(words).map_or(0, |(length, _)| length);
+        if name(rest) > first || name(behind) > second {
+            return None;
+        }
+        let length = first + 1 + second;
+        let mut noun = Self { at: self.at + length, ..*self };
+        noun.skip(|lexicon| &lexicon.adjectives);
+        let words = noun.rest();
+        let part = lexicon.name_parts.longest(words).map_or(0, |(length, _)| length);
+        let generic = lexicon.generic.longest(words).map_or(0, |(length, ())| length);
+        let last = words[..name(words).max(part).max(generic)].last()?;
+        let is_one = !last.ends_with('s') || last.ends_with("ss");
+        is_one.then(|| (length, format!("{one}{BOTH}{other}")))
     }
 
     /// Whether the next word is the last of its phrase.

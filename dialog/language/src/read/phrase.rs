@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::words::lexicon::{NamedRoom, Naming, Preposition, Pronoun, Side, StateWord};
 
+/// Between two colours of one thing.
+pub(crate) const BOTH: &str = " and ";
+
 /// What somebody said about an object.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub(crate) struct Phrase {
@@ -20,6 +23,9 @@ pub(crate) struct Phrase {
     pub(crate) is_floor: bool,
     pub(crate) color: Option<String>,
     pub(crate) states: Vec<StateWord>,
+    /// What it is more so than others of its kind: `the tall lamp`.
+    #[serde(default)]
+    pub(crate) sizes: Vec<Side>,
     pub(crate) side: Option<Side>,
     pub(crate) ordinal: Option<i32>,
     pub(crate) room: Option<RoomId>,
@@ -73,6 +79,13 @@ pub(crate) enum RelationKind {
     LeftOf,
     /// Beside it, and farther right as the robot looks at it.
     RightOf,
+}
+
+impl RelationKind {
+    /// Whether it says that the object is beside another one.
+    pub(crate) const fn is_beside(self) -> bool {
+        matches!(self, Self::Near | Self::LeftOf | Self::RightOf)
+    }
 }
 
 /// What stands after a preposition.

@@ -1,16 +1,17 @@
 //! What a question asks for, and what it is about.
 
-use cohabit_cdf::state::StateFlag;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     read::{
+        asked_about::{at_start, first_named, named, owned, owner, which_holds, which_is_so, which_works},
         phrase::{Phrase, Place},
         reader::Reader,
         segments,
     },
     words::{
-        lexicon::{Lexicon, Preposition, Pronoun, StateWord},
+        lexicon::{Lexicon, Preposition},
+        lists::Whereabouts,
         question_kind::{QuestionKind, Shape},
         table::PhraseTable,
         token,
@@ -70,6 +71,49 @@ impl Question {
     }
 }
 
+/// Words by which a question about anything begins, and what follows them there.
+const ASKING: [&str; 6] = ["what", "where", "how", "who", "why", "which"];
+const HELPING: [&str; 15] =
+    ["is", "are", "was", "were", "do", "does", "did", "can", "could", "will", "would", "has", "have", "many", "much"];
+/// Up to how many words stand before a comma that only say how somebody feels: `oh well, why not`.
+const EXCLAIMED: usize = 2;
+/// Up to where in a question why it is said whose doing is asked about.
+const ABOUT_WHOM: usize = 5;
+
+/// The pieces of a sentence in each of which something is asked, as `what is it, and where is it` has two; one piece, if there are no more.
+pub(crate) fn several(words: &[String]) -> Vec<&[String]> {
+    let is_joint = |word: &String| matches!(word.as_str(), "," | "and");
+    let begins = |at: usize| {
+        let is_of = |at: usize, list: &[&str]| words.get(at).is_some_and(|word| list.contains(&word.as_str()));
+        at > 0 && is_joint(&words[at - 1]) && is_of(at, &ASKING) && is_of(at + 1, &HELPING)
+    };
+    let starts: Vec<usize> = std::iter::once(0).chain((0..words.len()).filter(|at| begins(*at))).collect();
+    let ends = starts.iter().skip(1).copied().chain([words.len()]);
+    let pieces = starts.iter().zip(ends).map(|(start, end)| {
+        let piece = &words[*start..end];
+        let said = piece.iter().rposition(|word| !is_joint(word)).map_or(0, |last| last + 1);
+        &piece[..said]
+    });
+    pieces.collect()
+}
+
+/// The words in which a sentence asks for the reason of what the robot does, if it does so: `well, why do you need it`, `why not`.
+pub(crate) fn asked_why<'w>(lexicon: &Lexicon, sentence: &'w [String]) -> Option<&'w [String]> {
+    let comma = sentence.iter().take(EXCLAIMED + 1).position(|word| word == ",");
+    [0, comma.map_or(0, |at| at + 1)].into_iter().find_map(|from| {
+        let said = &sentence[from..];
+        let begins = |(at, polite): &(usize, usize)| {
+            let longest = lexicon.questions.longest(&said[*at..]);
+            longest.is_some_and(|(length, kind)| *kind == QuestionKind::Why && length > *polite)
+        };
+        let (at, _) = starts(lexicon, said).into_iter().find(begins)?;
+        let asked = &said[at..];
+        let is_of_robot = asked.iter().take(ABOUT_WHOM).any(|word| matches!(word.as_str(), "you" | "we"));
+        let is_bare = matches!(asked, [_] | [_, _]) && asked.iter().skip(1).all(|word| word == "not" || word == "?");
+        (is_of_robot || is_bare).then_some(asked)
+    })
+}
+
 /// The question that these words ask, if they ask one.
 pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     let segments = segments::segments(lexicon, words);
@@ -81,11 +125,42 @@ pub(crate) fn read(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
         })
     };
     let is_whether = starts(lexicon, first).into_iter().any(is_whether);
+    // `any mug on the table` answers, too.
+    if question.kind == QuestionKind::OfKind && is_whether && !words.iter().any(|word| word == "?") {
+        return None;
+    }
     Some(Question { is_whether, ..question })
+}
+
+/// `where are the teapot and the tea bags`, `are there cups or plates in the kitchen`: each of several things whose place is asked for;
+/// nothing, where that is of one. The place that the last one is said to be at is that of all.
+pub(crate) fn each_of(lexicon: &Lexicon, question: &Question) -> Option<Vec<Phrase>> {
+    if question.kind != QuestionKind::Where {
+        return None;
+    }
+    let mut reader = Reader::new(lexicon, &question.rest);
+    let mut each = vec![reader.phrase_with_place()?];
+    while ["and", "or", "nor"].iter().any(|joint| reader.next_is(joint)) {
+        reader.at += 1;
+        each.push(reader.phrase_with_place()?);
+    }
+    let is_named = |phrase: &Phrase| !phrase.namings.is_empty() && phrase.unknown.is_empty();
+    let is_each = each.len() > 1 && each.iter().all(is_named) && lexicon.yes_no.is_filler(reader.rest());
+    let last = each.last().filter(|_| is_each).cloned()?;
+    for phrase in &mut each {
+        if phrase.room.is_none() && !phrase.is_here && phrase.relations.is_empty() {
+            phrase.relations.clone_from(&last.relations);
+            (phrase.room, phrase.is_here) = (last.room, last.is_here);
+        }
+    }
+    Some(each)
 }
 
 fn read_sentence(lexicon: &Lexicon, first: &[String]) -> Option<Question> {
     if let Some(question) = shaped(lexicon, first) {
+        return Some(question);
+    }
+    if let Some(question) = starts(lexicon, first).into_iter().find_map(|(at, _)| kind_asked(lexicon, &first[at..])) {
         return Some(question);
     }
     let asked = put_plainly(lexicon, first);
@@ -171,87 +246,36 @@ fn shaped(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
     })
 }
 
-/// The phrase that words begin with, or else the first thing that they name.
-fn first_named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    at_start(lexicon, words).filter(|phrase| !phrase.is_empty()).or_else(|| named(lexicon, words))
-}
-
-/// `mug is that on the table`, of `whose`: the mug on the table.
-fn owned(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    let is_joint = |word: &&String| !matches!(word.as_str(), "is" | "are" | "that" | "this" | "these" | "those");
-    let named: Vec<String> = words.iter().filter(is_joint).cloned().collect();
-    at_start(lexicon, &named).filter(|phrase| !phrase.namings.is_empty())
-}
-
-/// `what is its color`, `and their colors`, `colors do they have`: what these stand for.
-fn owner(words: &[String]) -> Option<Phrase> {
-    let (text, pronoun) = words.iter().find_map(|word| match word.as_str() {
-        "its" | "it" => Some(("it", Pronoun::Thing)),
-        "their" | "they" | "them" => Some(("them", Pronoun::Things)),
-        _ => None,
-    })?;
-    Some(Phrase { text: text.to_owned(), pronoun: Some(pronoun), ..Phrase::default() })
-}
-
-/// The phrase that words begin with.
-fn at_start(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    Reader::new(lexicon, words).phrase_with_place()
-}
-
-/// `computer controls the laser`: the computer for the laser.
-fn which_works(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    let (at, length) = (1..words.len()).find_map(|at| Some((at, lexicon.control_words.longest(&words[at..])?.0)))?;
-    let is_spare = |word: &&String| !matches!(word.as_str(), "is" | "are" | "one");
-    let thing: Vec<String> = words[..at].iter().filter(is_spare).cloned().collect();
-    let mut what = Reader::new(lexicon, &thing).phrase().filter(|phrase| !phrase.namings.is_empty())?;
-    let place = Reader::new(lexicon, &words[at + length..]).destination()?;
-    what.attach(Preposition::For, place);
-    Some(what)
-}
-
-/// `shelves do you see there`: the shelves.
-fn which_seen(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    let sees = |words: &[String]| matches!(words, [helper, you, see] if matches!(helper.as_str(), "do" | "can") && you == "you" && see == "see");
-    let at = words.windows(3).position(sees)?;
-    Reader::new(lexicon, &words[..at]).phrase().filter(|phrase| !phrase.namings.is_empty())
-}
-
-/// `mug is red`, `one is the biggest`: the red mug.
-fn which_is_so(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    let phrase = which_works(lexicon, words).or_else(|| which_seen(lexicon, words));
-    if let Some(phrase) = phrase.or_else(|| which_is_switched(lexicon, words)) {
-        return Some(phrase);
+/// `which cups are on the table`, `what toys are lying around`, `any fruit in here`: which things of a kind there are.
+fn kind_asked(lexicon: &Lexicon, words: &[String]) -> Option<Question> {
+    let (asks, rest) = words.split_first()?;
+    let is_any = asks == "any";
+    if !is_any && asks != "what" && asks != "which" {
+        return None;
     }
-    // `mug has coffee in it`: the mug with coffee in it.
-    if let Some(verb) = words.iter().position(|word| matches!(word.as_str(), "has" | "have" | "contains" | "contain")) {
-        let mut said = words.to_vec();
-        "with".clone_into(&mut said[verb]);
+    let mut reader = Reader::new(lexicon, rest);
+    let kind = reader.phrase().filter(|phrase| !phrase.namings.is_empty() && phrase.unknown.is_empty())?;
+    if kind.pronoun.is_some() || kind.side.is_some() || kind.ordinal.is_some() {
+        return None;
+    }
+    let (noun, after) = rest.split_at(reader.at);
+    let ways = if is_any { vec![(0, Whereabouts::Told)] } else { lexicon.yes_no.asks_which(after) };
+    let about = ways.into_iter().find_map(|(length, whereabouts)| {
+        let spare = |word: &&String| !token::is_punctuation(word);
+        let said: Vec<String> = noun.iter().chain(&after[length..]).filter(spare).cloned().collect();
         let mut reader = Reader::new(lexicon, &said);
-        return reader.phrase_with_place().filter(|phrase| reader.is_done() && phrase.is_described());
-    }
-    let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
-    let is_joint = |word: &&String| !matches!(word.as_str(), "and" | "a" | "an" | "the");
-    let said: Vec<String> = words[verb + 1..].iter().chain(&words[..verb]).filter(is_joint).cloned().collect();
-    let mut reader = Reader::new(lexicon, &said);
-    let phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
-    let is_told = phrase.color.is_some() || !phrase.states.is_empty() || phrase.side.is_some();
-    (reader.is_done() && is_told).then_some(phrase)
-}
-
-/// `lights are still on`: the lights that are switched on.
-fn which_is_switched(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    let verb = words.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
-    let said = lexicon.yes_no.without_fillers(&words[verb + 1..]);
-    let said = said.strip_prefix(&["still".to_owned()]).unwrap_or(said);
-    let is_on = match said {
-        [word] if word == "on" => true,
-        [word] if word == "off" => false,
-        _ => return None,
-    };
-    let mut reader = Reader::new(lexicon, &words[..verb]);
-    let mut phrase = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
-    phrase.states.push(StateWord::Flag(StateFlag::Toggled, is_on));
-    reader.is_done().then_some(phrase)
+        let phrase = reader.phrase_with_place()?;
+        let is_placed = phrase.is_here || phrase.room.is_some() || !phrase.relations.is_empty();
+        if phrase.relations.iter().any(|relation| relation.to.is_empty() || !relation.to.unknown.is_empty()) {
+            return None;
+        }
+        let is_told = is_placed || whereabouts != Whereabouts::Told;
+        let is_here = phrase.is_here || !is_placed && whereabouts == Whereabouts::Here;
+        let is_whole = lexicon.yes_no.is_filler(reader.rest());
+        (is_told && is_whole).then(|| Phrase { is_here, text: kind.text.clone(), ..phrase })
+    })?;
+    let rest = rest.iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
+    Some(Question::new(QuestionKind::OfKind, Some(about), rest))
 }
 
 /// `mugs there are on the table`, of `how many`: the mugs on the table.
@@ -285,15 +309,6 @@ fn with_state_last(lexicon: &Lexicon, words: &[String]) -> Vec<String> {
         return [thing, place, state].concat();
     }
     words.to_vec()
-}
-
-/// The first thing that the words name.
-pub(crate) fn named(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    (0..words.len()).find_map(|at| {
-        let mut reader = Reader::new(lexicon, words);
-        reader.at = at;
-        reader.phrase_with_place().filter(|phrase| !phrase.namings.is_empty() && phrase.unknown.is_empty())
-    })
 }
 
 /// What a question whose beginning tells nothing asks, by what else is in it.
@@ -362,22 +377,6 @@ fn put_plainly(lexicon: &Lexicon, words: &[String]) -> Option<Vec<String>> {
     let asked = asked[at + 1..].strip_prefix(&["whether".to_owned()])?;
     let verb = asked.iter().position(|word| matches!(word.as_str(), "is" | "are"))?;
     Some(asked[verb..=verb].iter().chain(&asked[..verb]).chain(&asked[verb + 1..]).cloned().collect())
-}
-
-/// `which machine is the bowl on`: where the bowl is.
-fn which_holds(lexicon: &Lexicon, words: &[String]) -> Option<Phrase> {
-    let mut reader = Reader::new(lexicon, words);
-    reader.phrase().filter(|phrase| !phrase.is_empty())?;
-    if !reader.next_is("is") && !reader.next_is("are") {
-        return None;
-    }
-    reader.at += 1;
-    let about = reader.phrase().filter(|phrase| !phrase.is_empty() && phrase.unknown.is_empty())?;
-    let (length, _) = lexicon.prepositions.longest(reader.rest()).filter(|_| !reader.is_done())?;
-    reader.at += length;
-    // `which table is the can on, the round one?`
-    let is_guess = |mut reader: Reader<'_>| reader.phrase().is_some() && reader.is_done();
-    (reader.is_done() || is_guess(reader)).then_some(about)
 }
 
 /// Where a question may begin: at the words as they are, then after each polite word at the start, each with the length of the next

@@ -49,7 +49,9 @@ impl<'a> Reader<'a> {
         let said = phrase.text.clone();
         let start = self.at;
         loop {
-            if let Some((preposition, place)) = self.place() {
+            if let Some((length, _)) = self.nook() {
+                self.at += length;
+            } else if let Some((preposition, place)) = self.place() {
                 let is_with = preposition == Preposition::With;
                 phrase.attach(preposition, place);
                 // `the desk with the computer on it`
@@ -346,6 +348,28 @@ impl<'a> Reader<'a> {
         }
         *self = reader;
         Some(*side)
+    }
+
+    /// `in the corner`, `on the wall`: where in a room, which tells the robot nothing; how many words say so, and the preposition.
+    pub(crate) fn nook(&self) -> Option<(usize, Preposition)> {
+        let mut reader = *self;
+        reader.skip(|lexicon| &lexicon.link);
+        let (length, preposition) = reader.lexicon.prepositions.longest(reader.rest())?;
+        reader.at += length;
+        reader.skip(|lexicon| &lexicon.articles);
+        let (length, ()) = reader.lexicon.nooks.longest(reader.rest())?;
+        let noun = reader.lexicon.classes.longest(reader.rest()).map_or(0, |(length, _)| length);
+        reader.at += length;
+        // `on the wall shelf`, `in the corner cupboard`
+        let is_name = noun > length || reader.lexicon.classes.longest(reader.rest()).is_some();
+        // `on the corner of the desk` is on the desk, `in the corner of the kitchen` in the kitchen.
+        let mut whole = reader;
+        let is_of_thing = reader.next_is("of") && whole.of_room().is_none();
+        let says_where = matches!(
+            preposition,
+            Preposition::In | Preposition::On | Preposition::At | Preposition::Near | Preposition::From
+        );
+        (says_where && !is_name && !is_of_thing).then_some((reader.at - self.at, *preposition))
     }
 
     /// A number in digits or words: `2.5`, `two`, `one and a half`, `half a`, `a couple of`.

@@ -49,7 +49,7 @@ pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Op
     for (length, intent) in fixed {
         readings.extend(read_as(lexicon, intent, &words[..length].join(" "), words, length));
     }
-    readings.retain(|(clause, _)| is_complete(clause, catalog));
+    readings.retain(|(clause, _)| is_complete(clause, catalog) && is_said_of_it(lexicon, clause, catalog));
     // `hit it`: rather a button than to pieces.
     // `make the apple a carrot`: rather that than to print it.
     let is_last_resort = |clause: &Clause| match clause.intent {
@@ -60,6 +60,14 @@ pub(crate) fn read(lexicon: &Lexicon, catalog: &Catalog, words: &[String]) -> Op
     readings.sort_by_key(|(clause, _)| is_last_resort(clause));
     let best = readings.iter().position(|(clause, _)| is_sensible(clause, catalog)).unwrap_or(0);
     readings.into_iter().nth(best)
+}
+
+/// Whether its verb is said of what is named: `draw the curtains`, and no picture.
+fn is_said_of_it(lexicon: &Lexicon, clause: &Clause, catalog: &Catalog) -> bool {
+    let kinds = lexicon.verbs_of_kinds.exact(&token::words(&clause.verb)).map_or(&[][..], Vec::as_slice);
+    let Some((_, kind)) = kinds.iter().find(|(intent, _)| *intent == clause.intent) else { return true };
+    let named = clause.objects.first().map_or(&[][..], |phrase| phrase.namings.as_slice());
+    named.iter().any(|naming| catalog.table().is_of_kind(kind, &catalog.class(naming.class).id))
 }
 
 /// Readings with the verb's last word after the object: `turn the sink on`.

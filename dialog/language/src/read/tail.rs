@@ -6,7 +6,7 @@ use crate::{
         color,
         phrase::{Phrase, Place},
         reader::Reader,
-        segments,
+        segments, slot,
     },
     words::{
         intent::Intent,
@@ -28,6 +28,12 @@ pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         }
         if let Some((length, ())) = reader.lexicon.exits.longest(reader.rest()) {
             clause.is_leaving = true;
+            reader.at += length;
+            continue;
+        }
+        if let Some((length, preposition)) = reader.nook()
+            && is_found_there(clause, preposition)
+        {
             reader.at += length;
             continue;
         }
@@ -100,6 +106,13 @@ pub(crate) fn read_tail(reader: &mut Reader<'_>, clause: &mut Clause) {
         clause.has_stray_noun |= nouns.contains(&true) || is_moved;
         reader.at += 1;
     }
+}
+
+/// Whether what was named is in such a place, rather than to be put there.
+fn is_found_there(clause: &Clause, preposition: Preposition) -> bool {
+    let is_put = matches!(clause.intent, Intent::Place | Intent::Drop | Intent::Throw) && clause.places.is_empty();
+    let is_named = |phrase: &&Phrase| !phrase.is_bare_pronoun();
+    slot::named(clause).iter().any(is_named) && (preposition == Preposition::From || !is_put)
 }
 
 pub(crate) const fn is_thing(pronoun: Pronoun) -> bool {

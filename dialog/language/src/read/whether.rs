@@ -3,7 +3,7 @@
 use cohabit_cdf::Catalog;
 
 use crate::{
-    read::{clause::Clause, reading, segments},
+    read::{clause::Clause, reader::Reader, reading, segments},
     words::{inflect, lexicon::Lexicon, token},
 };
 
@@ -30,9 +30,11 @@ pub(crate) fn sentences(words: &[String]) -> Vec<&[String]> {
     sentences.filter(|sentence| sentence.iter().any(|word| !token::is_punctuation(word))).collect()
 }
 
-/// `did you close the fridge`: what the robot may have done.
+/// `did you close the fridge`, `did the plant get watered`: what the robot may have done.
 pub(crate) fn deed_asked_about(lexicon: &Lexicon, catalog: &Catalog, asked: &[String]) -> Option<Clause> {
     let words = &lexicon.yes_no;
+    let active = put_actively(lexicon, asked);
+    let asked = active.as_deref().unwrap_or(asked);
     let [helper, subject, done @ ..] = asked else { return None };
     let is_asked = words.past.contains(helper) || words.perfect.contains(helper);
     if !is_asked || subject != "you" && subject != "we" {
@@ -46,4 +48,35 @@ pub(crate) fn deed_asked_about(lexicon: &Lexicon, catalog: &Catalog, asked: &[St
         *first = inflect::stem(lexicon, first)?;
     }
     reading::read(lexicon, catalog, &done).map(|(clause, _)| clause)
+}
+
+/// `did the plant get its water`, `has the milk been put in the fridge`: the same asked of the robot, `did you water the plant`. Whether
+/// something is back is told by where it is.
+pub(crate) fn put_actively(lexicon: &Lexicon, asked: &[String]) -> Option<Vec<String>> {
+    const PERFECT: [&str; 3] = ["has", "have", "had"];
+    let words = &lexicon.yes_no;
+    let (helper, rest) = asked.split_first()?;
+    let mut reader = Reader::new(lexicon, rest);
+    let is_person = rest.first().is_some_and(|first| first == "you" || first == "we" || first == "i");
+    reader.phrase().filter(|phrase| !is_person && (!phrase.namings.is_empty() || phrase.is_bare_pronoun()))?;
+    let (thing, after) = rest.split_at(reader.at);
+    let (auxiliary, done) = after.split_first()?;
+    let gets = words.past.contains(helper) && auxiliary == "get";
+    if !(gets || PERFECT.contains(&helper.as_str()) && auxiliary == "been") {
+        return None;
+    }
+    let skipped = done.iter().take_while(|word| words.between.contains(*word)).count();
+    let done = &done[skipped..];
+    if words.says_back(after) {
+        return None;
+    }
+    let (length, verb) = match words.gets.longest(done) {
+        Some((length, verb)) if gets => (length, verb.clone()),
+        _ => {
+            let first = done.first()?;
+            (1, inflect::stem(lexicon, first).or_else(|| inflect::is_verb(lexicon, first).then(|| first.clone()))?)
+        }
+    };
+    let asks = ["did".to_owned(), "you".to_owned(), verb];
+    Some(asks.iter().chain(thing).chain(&done[length..]).cloned().collect())
 }

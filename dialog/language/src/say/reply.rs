@@ -107,7 +107,10 @@ fn clause_in_words(clause: &Clause) -> String {
         "" => "it".to_owned(),
         text => text.replace("sss ", "ss's "),
     };
+    // `make coffee`, where nobody said in what.
+    let is_told = !clause.objects.is_empty() || !clause.places.is_empty();
     let verb = clause.intent.verb();
+    let verb = verb.strip_suffix(" in").filter(|_| !is_told).unwrap_or(verb);
     // `go to the table`, of who goes to it
     let word = |preposition: &Preposition| Some(preposition.word()).filter(|word| !verb.ends_with(&format!(" {word}")));
     let place_of = |preposition: &Preposition, place: String| match word(preposition) {

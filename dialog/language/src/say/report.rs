@@ -14,17 +14,24 @@ pub(crate) const LOOKS_UNDER: &str = "looking under";
 /// What is said after success: what is so now.
 pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step: &Step, status: Status) -> String {
     let the = |id: ObjectId| describe::short(catalog, scene, id);
-    if status == Status::AlternateNavigationUsed {
+    if status == Status::AlternateNavigationUsed && step.action.receptacle().is_none() {
         return "I got as close as I could.".to_owned();
     }
     let text = match step.action {
-        Action::PickUp { object } => format!("I have {}{}", the(object), warmth(scene, object)),
+        Action::PickUp { object } => format!("I have {}{}", the(object), warmth(scene, object, &the(object))),
         Action::Place { receptacle } => match scene.contents(receptacle).last() {
             Some(_) => {
-                format!("done, it is {} {} now", describe::preposition(catalog, scene, receptacle), the(receptacle))
+                let what = step.says.strip_prefix("putting ").unwrap_or_default();
+                let place = format!("{} {}", describe::preposition(catalog, scene, receptacle), the(receptacle));
+                format!("done, {} {} {place} now", prose::they(what), prose::is(what))
             }
             None => "done".to_owned(),
         },
+        Action::PlaceBeside { receptacle, beside } if status == Status::AlternateNavigationUsed => {
+            let preposition = describe::preposition(catalog, scene, receptacle);
+            format!("there was no room next to {}, so it is {preposition} {} now", the(beside), the(receptacle))
+        }
+        Action::PlaceBeside { beside, .. } => format!("done, it is next to {} now", the(beside)),
         Action::GoTo { target: GoToTarget::Room(room) } => format!("I am in the {}", room.name_in(catalog)),
         Action::GoTo { target: GoToTarget::Point(_) } => match step.says.strip_prefix("bringing you ") {
             Some(what) => format!("here is {what}"),
@@ -45,12 +52,13 @@ pub(crate) fn success(catalog: &Catalog, devices: &Devices, scene: &Known, step:
 }
 
 /// What nobody sees of a thing in the hand: that it is hot or cold.
-fn warmth(scene: &Known, id: ObjectId) -> &'static str {
-    match scene.object(id) {
-        Some(object) if object.has(StateFlag::Hot) => ", and it is hot",
-        Some(object) if object.has(StateFlag::Cold) => ", and it is cold",
-        _ => "",
-    }
+fn warmth(scene: &Known, id: ObjectId, name: &str) -> String {
+    let state = match scene.object(id) {
+        Some(object) if object.has(StateFlag::Hot) => "hot",
+        Some(object) if object.has(StateFlag::Cold) => "cold",
+        _ => return String::new(),
+    };
+    format!(", and {} {} {state}", prose::they(name), prose::is(name))
 }
 
 fn interaction(
@@ -64,31 +72,51 @@ fn interaction(
 ) -> String {
     if let Some(by_hand) = step.by_hand() {
         let done = by_hand.doing().replace("ing", "ed");
-        return format!("{the} is {done}");
+        return format!("{the} {} {done}", prose::is(the));
     }
+    let is = prose::is(the);
+    let held = scene.robot.held.map_or_else(String::new, |held| describe::short(catalog, scene, held));
     match verb {
-        Verb::Open => format!("{the} is open"),
+        Verb::Open => format!("{the} {is} open"),
         Verb::Close => match scene.robot.held.filter(|held| *held != object) {
-            Some(held) => format!("{the} is closed, and I have {}", describe::short(catalog, scene, held)),
-            None => format!("{the} is closed"),
+            Some(_) => format!("{the} {is} closed, and I have {held}"),
+            None => format!("{the} {is} closed"),
         },
-        Verb::Break if scene.object(object).is_some_and(|object| object.has(StateFlag::Cut)) => format!("{the} is cut"),
-        Verb::Break => format!("{the} is broken"),
+        Verb::Break if scene.object(object).is_some_and(|object| object.has(StateFlag::Cut)) => {
+            format!("{the} {is} cut")
+        }
+        Verb::Break => format!("{the} {is} broken"),
         Verb::Scan => format!("I have scanned {the}"),
         Verb::Pour => format!("I have poured it into {the}"),
         Verb::Toggle => toggled(the, catalog, devices, scene, step, object),
-        Verb::Throw => format!("I have thrown it at {the}"),
-        Verb::Fill => "it is full now".to_owned(),
-        Verb::Clean => "it is clean now".to_owned(),
+        Verb::Throw => {
+            let what = step.says.strip_prefix("throwing ").unwrap_or_default();
+            format!("I have thrown {} at {the}", prose::it(what))
+        }
+        Verb::Fill => format!("{} {} full now", prose::they(&held), prose::is(&held)),
+        Verb::Clean => format!("{} {} clean now", prose::they(&held), prose::is(&held)),
         Verb::Examine if step.says.starts_with(LOOKS_UNDER) => match contents::under(catalog, scene, object) {
             Some(found) => found,
             None => format!("I see nothing under {the} or behind it"),
         },
-        Verb::Examine => match scene.object(object).filter(|object| !object.text.is_empty()) {
-            Some(object) => format!("it says: \"{}\"", object.text),
-            None => contents::inside(catalog, scene, object, 0)
-                .unwrap_or_else(|| format!("I have had a close look at {the}, and there is nothing to read on it")),
-        },
+        Verb::Examine => found(catalog, scene, object)
+            .unwrap_or_else(|| format!("I have had a close look at {the}, and there is nothing to read on it")),
+    }
+}
+
+/// What a close look at a thing finds: what is written on it, or what is in it or on it.
+fn found(catalog: &Catalog, scene: &Known, id: ObjectId) -> Option<String> {
+    let written = scene.object(id).filter(|object| !object.text.is_empty());
+    written.map(|object| format!("it says: \"{}\"", object.text)).or_else(|| contents::inside(catalog, scene, id, 0))
+}
+
+/// Whether a step was a close look that found nothing to tell.
+pub(crate) fn finds_nothing(catalog: &Catalog, scene: &Known, step: &Step) -> bool {
+    match step.action {
+        Action::Interact { verb: Verb::Examine, object } if !step.says.starts_with(LOOKS_UNDER) => {
+            found(catalog, scene, object).is_none()
+        }
+        _ => false,
     }
 }
 
@@ -105,7 +133,7 @@ fn toggled(the: &str, catalog: &Catalog, devices: &Devices, scene: &Known, step:
         .find_map(|(doing, done)| step.says.starts_with(doing).then_some(done));
     let works = device.map_or_else(String::new, |id| format!(", which works {}", describe::short(catalog, scene, id)));
     match did {
-        Some("turned on") | None if is_on => format!("{the} is on"),
+        Some("turned on") | None if is_on => format!("{the} {} on", prose::is(the)),
         done => format!("I have {} {the}{works}", done.unwrap_or("switched")),
     }
 }

@@ -28,6 +28,7 @@ pub(crate) fn says(catalog: &Catalog, scene: &Known, action: &Action) -> String 
             let preposition = describe::preposition(catalog, scene, receptacle);
             format!("putting {} {preposition} {}", held(), the(receptacle))
         }
+        Action::PlaceBeside { beside, .. } => format!("putting {} next to {}", held(), the(beside)),
         Action::Interact { verb: Verb::Pour, object } => format!("pouring {} into {}", held(), the(object)),
         Action::Interact { verb: Verb::Throw, object } => format!("throwing {} at {}", held(), the(object)),
         Action::Interact { verb: Verb::Fill, object } => format!("filling {} at {}", held(), the(object)),

@@ -2,7 +2,7 @@
 
 use cohabit_cdf::RoomId;
 
-use crate::talk::{conversation::Conversation, faithful::Source};
+use crate::talk::{conversation::Conversation, source::Source};
 
 /// What a request to go somewhere begins with.
 const TRIP: [&str; 2] = ["go", "to"];

@@ -50,6 +50,8 @@ impl Conversation<'_> {
             && !is_place
             && parts.iter().any(|part| matches!(part, Part::Clause(_)));
         let is_yes = (self.small_at_start(words, Small::Yes) || is(Small::Resume)) && !is_command;
+        // Whoever orders or asks something else names none of the plans by a word that one of them has, too.
+        let is_else = is_command || self.asks_of_its_own(words);
         let leaves = is(Small::No) || is(Small::Neither) && !matches!(pending, Pending::Which { .. });
         // `no, not the dryer`
         let declines = matches!(pending, Pending::Also { .. }) && self.small_at_start(words, Small::No);
@@ -66,12 +68,12 @@ impl Conversation<'_> {
             }
             Pending::Offer { mut plans } => {
                 let names: Vec<String> = plans.iter().map(|steps| reply::plan_in_words(steps)).collect();
-                let at = self.chosen_plan(words, is_yes || is(Small::Any), is_command, &names)?;
+                let at = self.chosen_plan(words, is_yes || is(Small::Any), is_else, &names)?;
                 Some(self.go(plans.swap_remove(at), context))
             }
             Pending::Guess { mut guesses } => {
                 let names: Vec<String> = guesses.iter().map(|guess| guess.name.clone()).collect();
-                let at = self.chosen_plan(words, is_yes || is(Small::Any), is_command, &names)?;
+                let at = self.chosen_plan(words, is_yes || is(Small::Any), is_else, &names)?;
                 let guess = self.without_denied(guesses.swap_remove(at), words)?;
                 Some(self.go_as_guessed(guess, context))
             }
@@ -136,7 +138,8 @@ impl Conversation<'_> {
             let is_all = from == 0 && mark.is_none();
             // `a light bulb? open the fridge`: who asks back chooses nothing.
             let is_echo = words.get(end).is_some_and(|mark| mark == "?") && end + 1 < words.len();
-            if !said.is_empty() && !is_all && !is_echo {
+            let is_asked = is_echo || self.small(said).is_empty() && self.is_part_of_question(words, end);
+            if !said.is_empty() && !is_all && !is_asked {
                 let answered = self.answered_by(said, &words[end..], pending, context);
                 if answered.is_some() || self.asks_for_more_than_agreed(said) {
                     return answered;
@@ -155,6 +158,19 @@ impl Conversation<'_> {
         pending: Option<&Pending>,
         context: &mut Context,
     ) -> Option<Understanding> {
+        let more: Vec<String> = segments::segments(self.lexicon, rest)
+            .into_iter()
+            .filter(|part| self.asks_for_more_than_agreed(part))
+            .map(token::sentence)
+            .collect();
+        // `fine, bring me the banana`: of several plans a yes before something else chooses none.
+        let is_bare_yes = || {
+            let small = self.small(first);
+            small.contains(&Small::Yes) && !small.contains(&Small::Any)
+        };
+        if !more.is_empty() && pending.is_some_and(Pending::offers_several) && is_bare_yes() {
+            return None;
+        }
         let mut then = Context { pending: pending.cloned(), later: Vec::new(), ..context.clone() };
         let understanding = match pending? {
             Pending::Lab { words: before, at } => {
@@ -168,11 +184,6 @@ impl Conversation<'_> {
         if !matches!(understanding, Understanding::Plan { .. }) {
             return None;
         }
-        let more: Vec<String> = segments::segments(self.lexicon, rest)
-            .into_iter()
-            .filter(|part| self.asks_for_more_than_agreed(part))
-            .map(token::sentence)
-            .collect();
         let own = std::mem::take(&mut then.later);
         then.later = context.later.iter().cloned().chain(own).collect();
         if !more.is_empty() {
@@ -180,6 +191,30 @@ impl Conversation<'_> {
         }
         *context = then;
         Some(understanding)
+    }
+
+    /// Whether what ends at `end` is part of a question that began by then: `what is over there, the big one?` chooses nothing.
+    fn is_part_of_question(&self, words: &[String], end: usize) -> bool {
+        let Some(mark) = (end..words.len()).find(|at| token::ends_sentence(&words[*at])) else { return false };
+        let start = words[..end].iter().rposition(|word| token::ends_sentence(word)).map_or(0, |at| at + 1);
+        let begins = |at: &usize| *at == start || token::is_punctuation(&words[*at - 1]);
+        words[mark] == "?" && (start..end).filter(begins).any(|at| self.asks_of_its_own(&words[at..=mark]))
+    }
+
+    /// Whether words ask something of their own, and so choose nothing of what the robot asked about; `how about the last one?` chooses.
+    fn asks_of_its_own(&self, words: &[String]) -> bool {
+        let is_asked = words.iter().any(|word| word == "?");
+        // `where the printer is` answers.
+        let is_own = |kind| is_asked || !matches!(kind, QuestionKind::Unknown | QuestionKind::Where);
+        self.lexicon.fillers.suggests.longest(words).is_none()
+            && question::read(self.lexicon, words).is_some_and(|question| is_own(question.kind))
+    }
+
+    /// Whether it asks something of its own, and asks for nothing to be done.
+    pub(crate) fn only_asks(&self, words: &[String]) -> bool {
+        let sentences: Vec<&[String]> = words.split_inclusive(|word| token::ends_sentence(word)).collect();
+        let asks = |sentence: &&[String]| self.is_part_of_question(sentence, sentence.len() - 1);
+        sentences.iter().any(asks) && !sentences.iter().any(|sentence| self.is_request(sentence))
     }
 
     /// Whether a part of an answer asks for what was not agreed to before: `yes, go to it` does not.

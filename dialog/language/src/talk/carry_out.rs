@@ -5,6 +5,7 @@ use cohabit_cdf::ObjectId;
 use crate::{
     context::{
         Context, Guess, Pending,
+        failure::Failure,
         search::{Consent, Search},
     },
     ground::want::Miss,
@@ -105,7 +106,10 @@ impl Conversation<'_> {
         match fault {
             // What nothing makes was perhaps not to be made.
             Fault::Need { classes, text } if classes.is_empty() => Understanding::lost(text),
-            Fault::Cannot(text) | Fault::Need { text, .. } => Understanding::refusal(text),
+            Fault::Cannot(text) | Fault::Need { text, .. } => {
+                context.impossible = clauses;
+                Understanding::refusal(text)
+            }
             Fault::Offer { text, steps } if asks => {
                 context.pending = Some(Pending::Offer { plans: vec![steps] });
                 ask::confirmation(text)
@@ -190,11 +194,11 @@ impl Conversation<'_> {
     }
 
     /// The remedy that was offered after a failure, then the failed step again, then the rest.
-    pub(crate) fn mend(&self, failure: &crate::context::Failure, context: &mut Context) -> Understanding {
+    pub(crate) fn mend(&self, failure: &Failure, context: &mut Context) -> Understanding {
         let planner = self.planner(context.focus.clone());
         let remedy = remedy::remedy(planner, &failure.step, failure.status);
-        let again = std::iter::once(failure.step.clone()).chain(failure.rest.iter().cloned());
-        let steps = remedy.map(|remedy| remedy.steps).unwrap_or_default().into_iter().chain(again).collect();
+        let mut steps = remedy.map(|remedy| remedy.steps).unwrap_or_default();
+        steps.extend(failure.again(self.scene));
         self.go(steps, context)
     }
 

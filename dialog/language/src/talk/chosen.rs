@@ -108,8 +108,10 @@ impl Conversation<'_> {
             return Some(at);
         }
         let count = i32::try_from(names.len()).ok()?;
-        // `the second one, pick it up`
-        let first = words.split(|word| token::is_punctuation(word)).find(|part| !part.is_empty()).unwrap_or_default();
+        // `the second one, pick it up`, `yes, the second one`
+        let is_yes_alone = |part: &[String]| self.small(part).contains(&Small::Yes);
+        let mut parts = words.split(|word| token::is_punctuation(word));
+        let first = parts.find(|part| !part.is_empty() && !is_yes_alone(part)).unwrap_or_default();
         let ordinal = self.answer_phrase(&tidy::plain(first)).and_then(|phrase| phrase.ordinal);
         let at = match ordinal {
             Some(ordinal) if ordinal < 0 => count + ordinal,

@@ -7,6 +7,7 @@ use crate::{
     known::KnownObject,
     read::{
         phrase::Phrase,
+        reader::Reader,
         slot::{self, Role, Slot},
         tidy,
     },
@@ -14,7 +15,7 @@ use crate::{
     understanding::{Step, Understanding},
     words::{
         lexicon::{Naming, Side, Small},
-        token,
+        token::{self, MAX_CHARS},
     },
 };
 
@@ -53,6 +54,35 @@ impl Conversation<'_> {
         context.search = None;
         context.later.clear();
         context.reason = format!("you said \"{}\"", token::sentence(words));
+        context.mistaken = Some(done);
+        Some(self.plan(clauses, Consent::default(), context))
+    }
+
+    /// `no, not the whole laser, I mean only the tip`, of who was just told that a laser cannot be taken: the same of the tip. Nothing,
+    /// where no other thing is named.
+    pub(crate) fn meant_instead(&self, utterance: &str, context: &mut Context) -> Option<Understanding> {
+        let is_refusal = |(by_robot, text): &(bool, String)| *by_robot && context.refused.as_ref() == Some(text);
+        if !context.lines().last().is_some_and(is_refusal) || utterance.chars().nth(MAX_CHARS).is_some() {
+            return None;
+        }
+        let (words, _) = self.lexicon.normalise(utterance);
+        let denial = words.iter().position(|word| self.lexicon.ifs.negations.contains(word))?;
+        let said_at = |at: usize| self.lexicon.instead.longest(&words[at..]).map(|(length, ())| at + length);
+        let first = (denial + 1..words.len()).find_map(said_at)?;
+        let mut reader = Reader::new(self.lexicon, &words);
+        reader.at = first;
+        reader.skip(|lexicon| &lexicon.instead);
+        if reader.at_verb() {
+            return None;
+        }
+        let is_thing = |phrase: &Phrase| !phrase.namings.is_empty() && phrase.unknown.is_empty();
+        let meant = reader.phrase_with_place().filter(is_thing)?;
+        let mut clauses = context.impossible.clone();
+        let object = clauses.iter_mut().find_map(|clause| clause.objects.first_mut())?;
+        *object = meant;
+        (context.pending, context.search) = (None, None);
+        context.later.clear();
+        context.impossible.clear();
         Some(self.plan(clauses, Consent::default(), context))
     }
 

@@ -5,7 +5,7 @@ use cohabit_cdf::RoomId;
 
 use crate::{
     context::{Context, Guess, Pending},
-    read::tail,
+    read::{question, tail},
     say::{
         ask,
         reply::{self, Told},
@@ -19,7 +19,7 @@ use crate::{
         way::Way,
         wording::Wording,
     },
-    understanding::{Asking, Clarification, Understanding},
+    understanding::{Alternative, Asking, Clarification, Understanding},
     words::{prose, token},
 };
 
@@ -89,8 +89,15 @@ impl Reading {
 impl Conversation<'_> {
     /// What an utterance means, and how likely it is what was meant.
     pub(crate) fn understand_whole(&self, utterance: &str, context: &mut Context) -> (Understanding, f32) {
+        if let Some(rest) = self.without_remark(utterance) {
+            return self.understand_whole(&rest, context);
+        }
+        if let Some(understanding) = self.meant_instead(utterance, context) {
+            return (understanding, 1.0);
+        }
         let wording = self.wording(utterance);
-        if let Some(named) = self.with_room_named(&wording, room_kind::beside(self.lexicon, &wording.words)) {
+        let room = room_kind::beside(self.lexicon, &wording.words).or_else(|| self.room_acted_in(&wording, context));
+        if let Some(named) = self.with_room_named(&wording, room) {
             return self.understand_whole(&named, context);
         }
         let is_plain = self.is_plain(&wording);
@@ -102,6 +109,14 @@ impl Conversation<'_> {
         let mut ways = self.rewritten(&wording, context, Some(&by_grammar));
         if stop::denies_stop(utterance) {
             ways.retain(|way| !way.stops());
+        }
+        // Who asks something else while the robot waits for an answer is told: that chooses nothing.
+        if context.must_be_answered() && self.only_asks(&wording.tidied) {
+            ways.retain(|way| way.steps().is_none() || way.only_looks());
+        }
+        // Who asks why it does something orders nothing by that.
+        if self.asked_why(&wording.tidied).or_else(|| self.asked_why(&wording.words)).is_some() {
+            ways.retain(|way| way.steps().is_none() || !way.context.answered.is_empty());
         }
         // A robot that does nothing, and asks nothing, need not stop.
         if !context.is_busy() && context.pending.is_none() {
@@ -129,8 +144,19 @@ impl Conversation<'_> {
         let is_about_word = wording.length() <= SHORT
             && matches!(by_grammar.understanding, Understanding::Question { kind: Clarification::Appearance, .. });
         let to_overrule = if is_about_word { TO_OVERRULE_SHORT } else { reading.to_overrule() };
+        // Who wants something of a thing may only have been understood to want it found.
+        if reading == Reading::Partial
+            && ways.first().is_some_and(Way::only_looks)
+            && let Some(understanding) = self.begin(&ways, context)
+        {
+            return understanding;
+        }
         let least = |way: &Way| way.least().max(to_overrule);
         if let Some(likeliest) = ways.first().filter(|likeliest| likeliest.probability >= least(likeliest)) {
+            // What the grammar reads whole has what a rewriter leaves out: beside what a thing is put.
+            if reading != Reading::Partial && likeliest.is_same(&by_grammar) {
+                return Way { probability: likeliest.probability, ..by_grammar }.taken(context);
+            }
             return likeliest.taken(context);
         }
         if reading == Reading::Partial
@@ -142,17 +168,9 @@ impl Conversation<'_> {
             return meant.taken(context);
         }
         if reading == Reading::Partial
-            && let Some((begun, left)) = begun(&ways)
+            && let Some(understanding) = self.begin(&ways, context)
         {
-            let (understanding, probability) = begun.taken(context);
-            let Some(left) = left.filter(|_| self.judge.asking != Asking::Never) else {
-                return (understanding, probability);
-            };
-            context.pending = left.offer.map(|guess| {
-                let question = left.said.clone();
-                Pending::Also { guess: Box::new(guess), question, is_asked: false }
-            });
-            return (understanding.before(&left.said), probability);
+            return understanding;
         }
         if is_about_word {
             return by_grammar.taken(context);
@@ -176,6 +194,22 @@ impl Conversation<'_> {
         let Ok((n_best, evidence)) = self.n_best(&wording, context, Some(&by_grammar)) else { return Vec::new() };
         let of = |(one, evidence): (Hypothesis, Evidence)| (one.text, one.way.understanding, evidence);
         n_best.hypotheses.into_iter().zip(evidence).map(of).collect()
+    }
+
+    /// All ways to take an utterance: that of the grammar, then those of the rewriter, the likeliest first.
+    pub(crate) fn alternatives(&self, utterance: &str, context: &Context) -> Vec<Alternative> {
+        let wording = self.wording(utterance);
+        let own = self.by_grammar(&wording, self.is_plain(&wording), context);
+        let written = match self.n_best(&wording, context, Some(&own)) {
+            Ok((n_best, evidence)) => self.weighed(n_best, &evidence, &wording, context),
+            Err(asked) => asked.map(|way| (utterance.to_owned(), *way)).into_iter().collect(),
+        };
+        let of = |by_grammar: bool, text: String, way: Way| {
+            let Way { understanding, probability, .. } = way;
+            Alternative { text, by_grammar, understanding, probability }
+        };
+        let first = of(true, utterance.to_owned(), own);
+        std::iter::once(first).chain(written.into_iter().map(|(text, way)| of(false, text, way))).collect()
     }
 
     /// What is said to who stops what has been done already: that it can be undone.
@@ -216,9 +250,8 @@ impl Conversation<'_> {
         let is_taken = by_grammar.steps().is_some() || matches!(context.pending, Some(Pending::Also { .. }));
         let is_answer = is_taken && said <= LONGEST_ANSWER && self.answers(&wording.tidied, context);
         // Which one `the other one` is the rewriter has from what was said alone.
-        let is_correction = context.pending.is_none()
-            && by_grammar.is_understood()
-            && self.corrected(&wording.tidied, &mut context.clone()).is_some();
+        let is_correction =
+            context.pending.is_none() && by_grammar.is_understood() && by_grammar.context.mistaken.is_some();
         let is_wait = by_grammar.is_understood() && self.is_plain_wait(&wording.words);
         if is_of_lab || is_strange || is_too_long || is_conditional || is_answer || is_correction || is_wait {
             return Reading::Sure;
@@ -236,14 +269,26 @@ impl Conversation<'_> {
             self.lexicon.pronouns.longest(&wording.tidied[at..]).is_some_and(|(_, pronoun)| tail::is_thing(*pronoun))
         };
         let speaks_of_it = (0..wording.tidied.len()).any(is_it);
+        let is_alone = is_plain && by_grammar.is_understood() && self.asked_alone(&wording.tidied).is_some();
+        let is_short = said < LONG || self.questions_asked(&wording.tidied).is_some();
         match is_plain && !is_done && (by_grammar.is_understood() || is_known && said <= SHORT) {
-            true if said < SOME || said < LONG && (speaks_of_it || !by_grammar.changes_or_asks_which()) => {
+            true if is_alone || said < SOME || is_short && (speaks_of_it || !by_grammar.changes_or_asks_which()) => {
                 Reading::Sure
             }
             true if said < LONG => Reading::Short,
             true => Reading::Long,
             false => Reading::Partial,
         }
+    }
+
+    /// The room that a question about `the lab` means, asked in none of them: the one in which the robot did something last.
+    fn room_acted_in(&self, wording: &Wording<'_>, context: &Context) -> Option<RoomId> {
+        let kind = room_kind::bare(self.lexicon, self.scene, &wording.words)?;
+        let asks = question::read(self.lexicon, &wording.tidied).is_some();
+        if !asks || kind.here(self.scene.robot.room).is_some() {
+            return None;
+        }
+        context.deeds.things().find_map(|id| kind.has(self.scene.object(id)?.room))
     }
 
     /// The utterance with the name of the room that `the lab` means: one that is named besides, or that the robot is in.
@@ -253,6 +298,20 @@ impl Conversation<'_> {
         let is_told = kind.described(self.lexicon, self.scene, kind.after(&wording.words)).is_some();
         let mark = if wording.utterance.trim_end().ends_with('?') { "?" } else { "" };
         (!is_told).then(|| format!("{}{mark}", token::sentence(&kind.named(&wording.words, room, self.catalog))))
+    }
+
+    /// Begins with what several ways have in common, and offers how the likeliest of these goes on.
+    fn begin(&self, ways: &[Way], context: &mut Context) -> Option<(Understanding, f32)> {
+        let (begun, left) = begun(ways)?;
+        let (understanding, probability) = begun.taken(context);
+        let Some(left) = left.filter(|_| self.judge.asking != Asking::Never) else {
+            return Some((understanding, probability));
+        };
+        context.pending = left.offer.map(|guess| {
+            let question = left.said.clone();
+            Pending::Also { guess: Box::new(guess), question, is_asked: false }
+        });
+        Some((understanding.before(&left.said), probability))
     }
 
     /// Asks which of the likeliest plans is meant, instead of carrying any out; nothing, where none is likely at all.

@@ -8,12 +8,7 @@ use std::{collections::BTreeMap, sync::LazyLock};
 
 use crate::{
     ground::confidence::{by_name, product, softmax},
-    talk::{
-        conversation::Conversation,
-        faithful::{Source, covered},
-        prior::Outcome,
-        way::Way,
-    },
+    talk::{conversation::Conversation, faithful::covered, prior::Outcome, source::Source, way::Way},
     understanding::{Clarification, Understanding},
 };
 
@@ -26,6 +21,8 @@ pub(crate) struct Hypothesis {
     pub(crate) edit: Edit,
     pub(crate) outcome: Outcome,
     pub(crate) is_unfaithful: bool,
+    /// How many things it names of which nobody spoke.
+    pub(crate) unspoken: usize,
 }
 
 /// What was made of what a rewriter wrote.
@@ -98,7 +95,7 @@ impl Conversation<'_> {
         let is = |holds: bool| f32::from(u8::from(holds));
         let few = |count: usize| count.min(3) as f32;
         let log = |share: f32| share.max(f32::MIN_POSITIVE).ln().max(FAINTEST);
-        let of = |Hypothesis { way, text, probability, edit, outcome, .. }: &Hypothesis| {
+        let of = |Hypothesis { way, text, probability, edit, outcome, unspoken, .. }: &Hypothesis| {
             let asks =
                 matches!(&way.understanding, Understanding::Question { kind, .. } if *kind != Clarification::Reference);
             let values = [
@@ -112,7 +109,7 @@ impl Conversation<'_> {
                 is(*outcome == Outcome::Astray),
                 is(asks),
                 few(self.unnamed(text, source)),
-                few(self.unspoken(text, source)),
+                few(*unspoken),
                 few(self.invented(text, source)),
                 covered(text, source),
                 is(by_grammar.is_some_and(|grammar| way.is_same(grammar))),

@@ -3,22 +3,22 @@
 
 use std::collections::BTreeSet;
 
-use cohabit_cdf::{ClassId, ObjectClass, Property, RoomId};
+use cohabit_cdf::{ClassId, ObjectClass, Property};
 
 use crate::{
+    answer::claim::{asked_either, asked_state},
+    ground::focus::Focus,
     read::{question, whether},
-    talk::{condition, conversation::Conversation},
-    words::{
-        lexicon::{Lexicon, Naming},
-        question_kind::QuestionKind,
-        token,
+    talk::{
+        condition,
+        conversation::Conversation,
+        source::{HERE, Source, name_length, rooms, things, things_of},
     },
+    words::{lexicon::Naming, question_kind::QuestionKind, token},
 };
 
 /// Talk that asks for nothing; behind it stands of what kind it is, where that is known.
 pub(crate) const TALK: &str = "social";
-/// What says that a question is about this room; the first is how a plain one says so.
-const HERE: [&str; 3] = ["in this room", "in here", "around here"];
 /// What is said of all of a kind.
 const ALL: [&str; 3] = ["all", "every", "everything"];
 /// What is said of the one of two that was not spoken of.
@@ -29,63 +29,6 @@ const HOLDING: &str = "with";
 const MEANS: [&str; 4] = ["in", "with", "on", "from"];
 /// Of these, where it goes is what is asked for.
 const PUTS: [&str; 4] = ["put", "bring", "pour", "move"];
-/// Within so many words after `if` its `not` is said.
-const CLAUSE: usize = 6;
-
-/// What a rewriting was made of: what was said, and before.
-pub(crate) struct Source {
-    words: BTreeSet<String>,
-    /// The words that were said now.
-    said: BTreeSet<String>,
-    /// Each two words that stood beside each other before.
-    pairs: BTreeSet<[String; 2]>,
-    /// The same of what is around the robot.
-    pairs_around: BTreeSet<[String; 2]>,
-    /// Whether a condition was denied: `if it is not`.
-    is_denied: bool,
-    /// Whether anything was.
-    has_denial: bool,
-    /// Whether all that was said asks how things are: `is the bowl clean?`.
-    only_asks: bool,
-    /// Whether a condition was told.
-    has_condition: bool,
-    /// Whether it is about this room.
-    is_here: bool,
-    /// The rooms that were named, now or before, and now.
-    rooms: Vec<RoomId>,
-    pub(crate) rooms_said: Vec<RoomId>,
-    /// What names things among the words that were said now, and which classes it may mean.
-    things: Vec<(String, BTreeSet<ClassId>)>,
-    /// The classes that anything may mean that was said, now or before.
-    spoken: BTreeSet<ClassId>,
-    /// The same of what is around.
-    around: BTreeSet<ClassId>,
-}
-
-impl Source {
-    pub(crate) fn new(lexicon: &Lexicon, said: &[String], lines: &[(bool, String)], around: &str) -> Self {
-        let before: Vec<Vec<String>> = lines.iter().map(|(_, line)| lexicon.normalise(line).0).collect();
-        let around_words = token::words(around);
-        let things = things(lexicon, said);
-        let earlier = before.iter().flat_map(|words| things_of(lexicon, words));
-        Self {
-            spoken: things.iter().flat_map(|(_, classes)| classes.iter().copied()).chain(earlier).collect(),
-            around: things_of(lexicon, &around_words).collect(),
-            things,
-            pairs: before.iter().flat_map(|line| pairs(line)).collect(),
-            pairs_around: pairs(&around_words).collect(),
-            said: said.iter().cloned().collect(),
-            is_denied: denies_condition(lexicon, said),
-            only_asks: only_asks(lexicon, said),
-            has_condition: condition::has_condition(lexicon, said),
-            rooms: before.iter().map(Vec::as_slice).chain([said]).flat_map(|words| rooms(lexicon, words)).collect(),
-            rooms_said: rooms(lexicon, said),
-            is_here: HERE.iter().any(|here| format!(" {} ", said.join(" ")).contains(&format!(" {here} "))),
-            has_denial: said.iter().any(|word| lexicon.ifs.negations.contains(word)),
-            words: said.iter().cloned().chain(before.into_iter().flatten()).collect(),
-        }
-    }
-}
 
 impl Conversation<'_> {
     /// Plain requests without the colours and kinds of things that nobody named, and that nothing around is called by: `the red mug` where no red
@@ -138,11 +81,35 @@ impl Conversation<'_> {
     pub(crate) fn with_things_said(&self, text: &str, source: &Source) -> String {
         let said = self.only_unnamed(text, source);
         let requests = text.split("; ").map(|request| {
-            let request = self.without_unheard(request, source);
+            let request = self.with_color_said(self.without_unheard(request, source), source);
             let renamed = said.and_then(|said| self.with_thing(&request, said, &|classes| is_nowhere(classes, source)));
             renamed.unwrap_or(request)
         });
         requests.collect::<Vec<_>>().join("; ")
+    }
+
+    /// Plain requests with the thing that was said, where they name what is only taken for that, and such a one is around: who says lamp means
+    /// no light switch, where there is a lamp.
+    pub(crate) fn with_things_meant(&self, text: &str, source: &Source) -> String {
+        let written = things(self.lexicon, &token::words(text));
+        let named: BTreeSet<ClassId> = written.iter().flat_map(|(_, classes)| classes.iter().copied()).collect();
+        let is_written = |said: &String| written.iter().any(|(name, _)| name == said);
+        source.things.iter().filter(|(said, _)| !is_written(said)).fold(text.to_owned(), |text, (said, may_mean)| {
+            let called: BTreeSet<ClassId> =
+                may_mean.iter().copied().filter(|class| is_called(self.catalog.class(*class), said)).collect();
+            if called.is_disjoint(&source.around) || !called.is_disjoint(&named) {
+                return text;
+            }
+            let is_said_besides = |classes: &BTreeSet<ClassId>| {
+                source.things.iter().any(|(other, may_mean)| other != said && !may_mean.is_disjoint(classes))
+            };
+            let is_stand_in = |classes: &BTreeSet<ClassId>| {
+                !classes.is_disjoint(may_mean) && classes.is_disjoint(&called) && !is_said_besides(classes)
+            };
+            let meant =
+                |request: &str| self.with_thing(request, said, &is_stand_in).unwrap_or_else(|| request.to_owned());
+            text.split("; ").map(meant).collect::<Vec<_>>().join("; ")
+        })
     }
 
     /// The same where what they name first is around, but nobody spoke of it.
@@ -209,6 +176,50 @@ impl Conversation<'_> {
         text.split("; ").map(without).collect::<Vec<_>>().join("; ")
     }
 
+    /// Plain requests that ask where both of two things are, where both were said and only one of them is named.
+    pub(crate) fn with_both_things(&self, text: &str, source: &Source) -> String {
+        let classes = |name: &str| -> BTreeSet<ClassId> { things_of(self.lexicon, &token::words(name)).collect() };
+        let asks_where = |request: &str| {
+            request.ends_with('?')
+                && question::read(self.lexicon, &token::words(request))
+                    .is_some_and(|one| one.kind == QuestionKind::Where)
+        };
+        source.joined.iter().fold(text.to_owned(), |text, [first, joint, second]| {
+            let (named, of_first, of_second) = (classes(&text), classes(first), classes(second));
+            let has = [!of_first.is_disjoint(&named), !of_second.is_disjoint(&named)];
+            if has[0] == has[1] || !of_first.is_disjoint(&of_second) {
+                return text;
+            }
+            let said = if has[0] { of_first } else { of_second };
+            let both = format!("{first} {joint} {second}");
+            let is_it = |classes: &BTreeSet<ClassId>| !classes.is_disjoint(&said);
+            let meant = |request: &str| {
+                let with_both = asks_where(request).then(|| self.with_thing(request, &both, &is_it)).flatten();
+                with_both.unwrap_or_else(|| request.to_owned())
+            };
+            text.split("; ").map(meant).collect::<Vec<_>>().join("; ")
+        })
+    }
+
+    /// A plain request with the thing of the colour that was said, where it names one of another: `the yellow fruit`, taken for an apple.
+    fn with_color_said(&self, request: String, source: &Source) -> String {
+        let names_color = |word: &str| self.lexicon.colors.exact(&[word.to_owned()]).is_some();
+        if request.split(' ').any(names_color) {
+            return request;
+        }
+        let focus = Focus::default();
+        let ground = self.ground(&focus);
+        let is_so = |class: ClassId, color: &str| {
+            self.scene.objects.iter().any(|object| object.class == class && ground.has_color(object, color))
+        };
+        let meant = source.colored.iter().find_map(|said| {
+            let fits = |class: &ClassId| is_so(*class, &said.color);
+            let is_it = |classes: &BTreeSet<ClassId>| !classes.iter().any(fits) && !classes.is_disjoint(&said.classes);
+            said.classes.iter().any(fits).then(|| self.with_thing(&request, &said.thing, &is_it)).flatten()
+        });
+        meant.unwrap_or(request)
+    }
+
     /// How many things were said that plain requests do not name.
     pub(crate) fn unnamed(&self, text: &str, source: &Source) -> usize {
         let named: BTreeSet<ClassId> = things_of(self.lexicon, &token::words(text)).collect();
@@ -270,6 +281,22 @@ impl Conversation<'_> {
         text.split("; ").map(here).collect::<Vec<_>>().join("; ")
     }
 
+    /// Plain requests that ask for one of two states where that was asked: `is the fridge open?`, of `open or shut?`, would be answered with
+    /// a yes.
+    pub(crate) fn with_either(&self, text: &str, source: &Source) -> String {
+        let Some((states, both)) = &source.either else { return text.to_owned() };
+        let of_both = |request: &str| {
+            let asked = token::words(request.strip_suffix('?')?);
+            let (_, said) = asked_state(self.lexicon, &asked).filter(|(state, _)| states.contains(state))?;
+            let about = asked.strip_suffix(said).filter(|about| whether::asked_at(self.lexicon, about).is_some())?;
+            asked_either(self.lexicon, &asked).is_none().then(|| format!("{} {both}?", about.join(" ")))
+        };
+        text.split("; ")
+            .map(|request| of_both(request).unwrap_or_else(|| request.to_owned()))
+            .collect::<Vec<_>>()
+            .join("; ")
+    }
+
     /// Whether it is rather not what was said, by what its conditions deny, and by whether it asks what was asked.
     pub(crate) fn is_unfaithful(&self, text: &str, source: &Source) -> bool {
         let conditions: Vec<Vec<String>> = text
@@ -313,36 +340,14 @@ impl Conversation<'_> {
     }
 }
 
-/// What names things among words, and which classes it may mean.
-fn things(lexicon: &Lexicon, words: &[String]) -> Vec<(String, BTreeSet<ClassId>)> {
-    let (mut things, mut at) = (Vec::new(), 0);
-    while at < words.len() {
-        let Some((length, namings)) = lexicon.classes.longest(&words[at..]) else {
-            at += 1;
-            continue;
-        };
-        things.push((words[at..at + length].join(" "), namings.iter().map(|naming| naming.class).collect()));
-        at += length;
-    }
-    things
-}
-
-fn things_of(lexicon: &Lexicon, words: &[String]) -> impl Iterator<Item = ClassId> {
-    things(lexicon, words).into_iter().flat_map(|(_, classes)| classes)
+/// Whether the catalogue itself calls a thing so that is more than furnishing.
+fn is_called(class: &ObjectClass, said: &str) -> bool {
+    let mut names = std::iter::once(&class.name).chain(&class.words);
+    !class.has(Property::Decor) && names.any(|name| name.eq_ignore_ascii_case(said))
 }
 
 fn is_nowhere(classes: &BTreeSet<ClassId>, source: &Source) -> bool {
     classes.is_disjoint(&source.spoken) && classes.is_disjoint(&source.around)
-}
-
-/// The rooms that words name.
-fn rooms(lexicon: &Lexicon, words: &[String]) -> Vec<RoomId> {
-    (0..words.len()).filter_map(|at| lexicon.rooms.longest(&words[at..]).map(|(_, room)| *room)).collect()
-}
-
-/// Each two words that stand beside each other.
-fn pairs(words: &[String]) -> impl Iterator<Item = [String; 2]> {
-    words.windows(2).map(|pair| [pair[0].clone(), pair[1].clone()])
 }
 
 /// The share of the words that were said now which plain requests have, too.
@@ -355,28 +360,4 @@ pub(crate) fn covered(text: &str, source: &Source) -> f32 {
 /// Whether it is talk that asks for nothing.
 pub(crate) fn is_talk(request: &str) -> bool {
     request.strip_prefix(TALK).is_some_and(|kind| kind.is_empty() || kind.starts_with(": "))
-}
-
-/// How many words name the thing that words begin with.
-fn name_length(lexicon: &Lexicon, words: &[String]) -> usize {
-    lexicon.classes.longest(words).map_or(0, |(length, _)| length)
-}
-
-/// Whether every sentence wants a yes or a no, and requests nothing.
-fn only_asks(lexicon: &Lexicon, words: &[String]) -> bool {
-    let mut sentences =
-        words.split(|word| token::ends_sentence(word)).filter(|sentence| !sentence.is_empty()).peekable();
-    let asks_to_know = |sentence: &[String]| lexicon.yes_no.knowing.longest(sentence).is_some();
-    let asks = |sentence: &[String]| whether::asked_at(lexicon, sentence).is_some() || asks_to_know(sentence);
-    sentences.peek().is_some() && sentences.all(asks)
-}
-
-/// `if it is not`, `if not`, `unless`.
-fn denies_condition(lexicon: &Lexicon, words: &[String]) -> bool {
-    let after = |at: usize| lexicon.ifs.holds.longest(&words[at..]).map(|(length, ())| at + length);
-    (0..words.len()).filter_map(after).any(|start| {
-        let end =
-            words[start..].iter().position(|word| token::is_punctuation(word)).map_or(words.len(), |end| start + end);
-        words[start..end.min(start + CLAUSE)].iter().any(|word| lexicon.ifs.negations.contains(word))
-    })
 }

@@ -7,12 +7,16 @@ use crate::{
     context::{Context, Pending, search::Consent},
     ground::{focus::Focus, want::Want},
     known::{contents, memory},
-    read::{clause::Clause, phrase::Phrase, question},
-    say::reply,
+    read::{clause::Clause, phrase::Phrase, question, saying},
+    say::{ask, reply},
     talk::conversation::Conversation,
-    understanding::Understanding,
-    words::{intent::Intent, question_kind::QuestionKind, token},
+    understanding::{Asking, Understanding},
+    words::{intent::Intent, prose, question_kind::QuestionKind, token},
 };
+
+/// What is said of a deed that was perhaps not meant, and what is offered.
+const SORRY: &str = "I am sorry if that is not what you meant.";
+const SHALL_UNDO: &str = "Shall I undo it?";
 
 impl Conversation<'_> {
     pub(crate) fn answerer<'c>(&'c self, context: &'c Context, told: usize) -> Answerer<'c> {
@@ -80,6 +84,63 @@ impl Conversation<'_> {
         self.ground(&Focus::default()).one(phrase, &Want::place(Intent::Find, &[], None)).is_ok()
     }
 
+    /// Answers where each of several things is, and offers to look for those that it has not seen.
+    fn answer_each(&self, each: &[Phrase], question: &question::Question, context: &mut Context) -> Understanding {
+        let (mut told, mut unseen, mut known, mut held) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for phrase in each {
+            let rest = token::words(&phrase.text);
+            let one = question::Question { about: Some(phrase.clone()), rest, ..question.clone() };
+            match self.answerer(context, 0).answer(&one) {
+                Understanding::Question { .. } => unseen.push(phrase.clone()),
+                Understanding::Answer { text, highlight, holds } => {
+                    told.push(text);
+                    known.extend(highlight);
+                    held.extend(holds);
+                }
+                other => told.push(other.reply().to_owned()),
+            }
+        }
+        context.question = Some(question.kind);
+        if !known.is_empty() {
+            context.focus.group.clone_from(&known);
+        }
+        told.dedup();
+        if unseen.is_empty() {
+            let is_any = question.rest.iter().any(|word| word == "or");
+            let holds = if is_any { held.contains(&true) } else { held.len() == each.len() && !held.contains(&false) };
+            return Understanding::whether(holds, told.join(" "), known);
+        }
+        let names: Vec<String> = unseen.iter().map(saying::said).collect();
+        let them = if names.len() > 1 { "them" } else { "it" };
+        told.push(format!("I have not seen {} yet. Shall I look for {them}?", prose::list(&names, "or")));
+        context.focus.unseen = unseen.last().cloned();
+        context.pending = Some(Pending::Search { clauses: unseen.into_iter().map(Clause::find).collect() });
+        ask::confirmation(told.join(" "))
+    }
+
+    /// The same, with an apology and an offer to take it back, where it is asked why it did what was perhaps not meant.
+    fn regretted(&self, why: Understanding, question: &question::Question, context: &mut Context) -> Understanding {
+        if !self.answerer(context, 0).may_be_mistaken(question) {
+            return why;
+        }
+        match self.undo(&mut context.at_new_utterance()) {
+            Understanding::Plan { steps, .. } if !context.is_busy() && self.judge.asking != Asking::Never => {
+                context.pending = Some(Pending::Offer { plans: vec![steps] });
+                why.before(SORRY).before(SHALL_UNDO)
+            }
+            _ => why.before(SORRY),
+        }
+    }
+
+    /// The same question about what was spoken of last and was not seen yet, where it asks where `it` is or what `it` does.
+    fn about_unseen(&self, question: &question::Question, context: &Context) -> Option<question::Question> {
+        let is_meant = matches!(question.kind, QuestionKind::Where | QuestionKind::Purpose);
+        let is_it = |about: &Phrase| about.is_bare_pronoun() && !about.is_many();
+        let is_about_it = question.about.as_ref().map_or(question.rest.is_empty(), is_it);
+        let unseen = context.focus.unseen.clone().filter(|_| is_meant && is_about_it)?;
+        Some(question::Question { about: Some(unseen), ..question.clone() })
+    }
+
     /// Answers a question, and remembers what it is about.
     pub(crate) fn answer(&self, question: &question::Question, context: &mut Context) -> Understanding {
         if question.kind == QuestionKind::HowTo && !question.rest.is_empty() {
@@ -90,7 +151,14 @@ impl Conversation<'_> {
             (QuestionKind::Rest, Some((listed, told))) => (listed, *told),
             _ => (question, 0),
         };
+        if let Some(each) = question::each_of(self.lexicon, question) {
+            return self.answer_each(&each, question, context);
+        }
+        let of_unseen = self.about_unseen(question, context);
+        let question = of_unseen.as_ref().unwrap_or(question);
         let answer = self.answerer(context, told).answer(question);
+        let is_why = question.kind == QuestionKind::Why;
+        let answer = if is_why { self.regretted(answer, question, context) } else { answer };
         if matches!(question.kind, QuestionKind::Seeing | QuestionKind::Contents | QuestionKind::Carried) {
             // What else there is, is no yes or no.
             let listed = question::Question { is_whether: false, ..question.clone() };
@@ -117,6 +185,11 @@ impl Conversation<'_> {
                 [one] => {
                     context.focus.mention(*one);
                     context.focus.place = self.place_spoken_of(*one);
+                }
+                // What a kind of thing does was told without a thing of that kind.
+                [] if matches!(question.kind, QuestionKind::Purpose | QuestionKind::Look) => {
+                    context.focus.group.clear();
+                    context.focus.unseen = question.about.clone().filter(|about| !about.namings.is_empty());
                 }
                 several => context.focus.group = several.to_vec(),
             }

@@ -5,10 +5,12 @@ use crate::{
     read::{clause::Clause, reader::Reader, tidy},
     say::ask,
     talk::{condition::trimmed, conversation::Conversation},
-    understanding::Understanding,
+    understanding::{Step, Understanding},
     words::{lexicon::Small, prose, token},
 };
 
+/// What it says of what has nothing to do with what failed.
+const ALL_THE_SAME: &str = "I do the rest all the same.";
 /// What it says that does at once what it offered.
 const AGREED: &str = "OK.";
 
@@ -42,6 +44,9 @@ impl Conversation<'_> {
     /// What is left to do once a plan has ended: what was offered besides and agreed to, the search that it is a part of, or what is next.
     /// What was offered and not answered is then asked once more.
     pub(crate) fn carry_on(&self, context: &mut Context) -> Option<Understanding> {
+        if let Some(steps) = context.failed.as_mut().and_then(|failure| failure.take_apart(self.scene)) {
+            return Some(self.go_without(steps, context));
+        }
         if context.search.is_none()
             && let Some(guess) = context.agreed.take()
         {
@@ -52,9 +57,21 @@ impl Conversation<'_> {
         let Some(Pending::Also { guess, question, is_asked }) = offer.filter(|_| context.pending.is_none()) else {
             return next;
         };
+        // What was not found is done nothing with.
+        if matches!(next, Some(Understanding::Refusal { .. })) {
+            return next;
+        }
         let is_asked_now = next.is_none() && !is_asked;
         context.pending = Some(Pending::Also { guess, question: question.clone(), is_asked: is_asked || is_asked_now });
         if is_asked_now { Some(ask::confirmation(question)) } else { next }
+    }
+
+    /// Does what has nothing to do with what failed; what was offered for that stays offered.
+    fn go_without(&self, steps: Vec<Step>, context: &mut Context) -> Understanding {
+        let failed = context.failed.take();
+        let understanding = self.go(steps, context).after(ALL_THE_SAME);
+        context.failed = failed;
+        understanding
     }
 
     /// Somebody wants what was offered, too: once what is under way has ended.

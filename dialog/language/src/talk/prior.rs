@@ -5,8 +5,9 @@ use cohabit_cdf::{Action, Color, Fluid, GoToTarget, ObjectId, Property, StateFla
 use crate::{
     context::Context,
     known::{Known, KnownObject, imagine},
-    talk::{conversation::Conversation, evidence::Hypothesis, way::Way, wording::Wording},
+    talk::{conversation::Conversation, evidence::Hypothesis, source::Source, way::Way, wording::Wording},
     understanding::Step,
+    words::intent::Intent,
 };
 
 /// How many times likelier a way is that the robot has just asked about, one that meets the next open goal or leads to it, and one for a later
@@ -16,6 +17,11 @@ const FOR_NEXT_GOAL: f32 = 3.0;
 const FOR_LATER_GOAL: f32 = 1.5;
 /// The same of one that turns round what was said. By judgement, too: few labelled utterances deny anything.
 const UNFAITHFUL: f32 = 0.2;
+/// The same of one that names what nobody spoke of, where a likelier one asks for the same with what was said.
+const UNSPOKEN: f32 = 0.2;
+/// The same of one that does no more than go to a thing, where nobody asked for that, and another was named, too: who wants a bowl of
+/// fruit is not helped by a robot that stands at an apple.
+const ONLY_WALKS: f32 = 0.03;
 
 /// What becomes of the scene by a way.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -51,8 +57,36 @@ impl Conversation<'_> {
             Some(_) => FOR_LATER_GOAL,
             None => 1.0,
         };
-        let of = |one: &Hypothesis| for_goal(one) * if one.is_unfaithful { UNFAITHFUL } else { 1.0 };
+        // What `it` or `there` stands for is named by nobody.
+        let says_it = self.lexicon.pronouns.occurs_in(&wording.tidied);
+        let is_named_otherwise = |one: &Hypothesis| {
+            let names_it = |other: &Hypothesis| {
+                other.unspoken < one.unspoken && other.probability >= one.probability && verbs(other).eq(verbs(one))
+            };
+            !says_it && hypotheses.iter().any(names_it)
+        };
+        let source = Source::new(self.lexicon, &wording.words, &[], "");
+        let asks_to_go = (0..wording.words.len()).any(|at| self.asks_to_go(&wording.words[at..]));
+        let only_walks =
+            |one: &Hypothesis| !asks_to_go && one.way.only_goes() && self.unnamed(&one.text, &source) > 0;
+        let of = |one: &Hypothesis| {
+            let walk = if only_walks(one) { ONLY_WALKS } else { 1.0 };
+            let faithful = if one.is_unfaithful { UNFAITHFUL } else { 1.0 };
+            let spoken = if is_named_otherwise(one) { UNSPOKEN } else { 1.0 };
+            for_goal(one) * faithful * spoken * walk
+        };
         hypotheses.iter().map(of).collect()
+    }
+
+    /// Whether words begin with a verb of going somewhere, of finding or of looking.
+    fn asks_to_go(&self, words: &[String]) -> bool {
+        let is_going = |intent: &Intent| {
+            matches!(
+                intent,
+                Intent::GoTo | Intent::Find | Intent::Look | Intent::LookAround | Intent::Examine | Intent::Highlight
+            )
+        };
+        self.lexicon.verbs.longest(words).is_some_and(|(_, intents)| intents.iter().any(is_going))
     }
 
     /// Whether a step leaves what it works on as it is: cereal is poured into a bowl of cereal; or things are taken and put, and in the
@@ -80,7 +114,10 @@ impl Conversation<'_> {
             changes && !pours_unknown && state(&scene) == before
         };
         let moves = |step: &Step| matches!(step.action, Action::PickUp { .. } | Action::Place { .. });
-        steps.iter().any(changes_nothing) || steps.iter().any(moves) && lasting(&scene) == lasting(self.scene)
+        // What is put beside another thing stands elsewhere, be it on the same table.
+        let is_moved = steps.iter().any(|step| step.action.beside().is_some());
+        steps.iter().any(changes_nothing)
+            || !is_moved && steps.iter().any(moves) && lasting(&scene) == lasting(self.scene)
     }
 
     /// Whether it goes to a room to act on what is in another one.
@@ -101,6 +138,11 @@ impl Conversation<'_> {
         });
         goals.filter(|way| way.steps().is_some()).collect()
     }
+}
+
+/// The verbs of what a rewriter wrote.
+fn verbs(one: &Hypothesis) -> impl Iterator<Item = &str> {
+    one.text.split("; ").filter_map(|request| request.split(' ').next())
 }
 
 /// What a thing is in or on, what fills it, its colour and its states.

@@ -1,7 +1,9 @@
 //! Requests, one after the other: what is asked first is answered first, then what is to be done is done; what follows that waits until then.
 
 use crate::{
-    context::Context,
+    context::{Context, Pending},
+    read::clause::Clause,
+    say::ask,
     talk::{conversation::Conversation, room_kind, wording::Wording},
     understanding::Understanding,
 };
@@ -38,6 +40,7 @@ impl Conversation<'_> {
         understand: impl Fn(&str, &mut Context) -> Option<Understanding>,
     ) -> Option<Understanding> {
         let mut said: Vec<String> = Vec::new();
+        let mut sought: Vec<Clause> = Vec::new();
         let mut texts = texts.into_iter();
         while let Some(text) = texts.next() {
             let mut then = Context { later: Vec::new(), ..context.clone() };
@@ -47,6 +50,9 @@ impl Conversation<'_> {
                 // Whether to look for what was only asked about is not worth a question where more is asked for.
                 Understanding::Question { text: asked, .. } if !is_last && is_question(&text) => {
                     said.push(without_offer(asked));
+                    if let Some(Pending::Search { clauses }) = then.pending {
+                        sought.extend(clauses);
+                    }
                 }
                 Understanding::Refusal { is_lost: true, .. }
                     if is_question(&text) && (!is_last || !said.is_empty()) =>
@@ -76,6 +82,7 @@ impl Conversation<'_> {
                     *context = then;
                     context.later.extend(texts);
                     context.answered = said.join(" ");
+                    let understanding = with_all_sought(understanding, sought, context);
                     let is_first = said.is_empty();
                     return Some(if is_first { understanding } else { understanding.after(&context.answered) });
                 }
@@ -102,6 +109,25 @@ impl Conversation<'_> {
 
 fn is_question(text: &str) -> bool {
     text.ends_with('?')
+}
+
+/// The same question, where it offers to look for a thing, of those as well that were asked about before and are to be looked for.
+fn with_all_sought(understanding: Understanding, sought: Vec<Clause>, context: &mut Context) -> Understanding {
+    let (Understanding::Question { text, .. }, Some(Pending::Search { clauses })) =
+        (&understanding, &mut context.pending)
+    else {
+        return understanding;
+    };
+    // Each once: `where is the milk, and is there any milk?`
+    let names = |clause: &Clause| clause.objects.first().map(|phrase| phrase.namings.clone());
+    let others: Vec<Clause> =
+        sought.into_iter().filter(|other| clauses.iter().all(|clause| names(clause) != names(other))).collect();
+    if others.is_empty() {
+        return understanding;
+    }
+    clauses.splice(0..0, others);
+    let offer = format!("{} Shall I look for them?", without_offer(text));
+    ask::confirmation(offer)
 }
 
 /// `I have not seen a can yet. Shall I look for it?` without the offer.

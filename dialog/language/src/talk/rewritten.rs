@@ -12,7 +12,8 @@ use crate::{
         cache::Cache,
         conversation::Conversation,
         evidence::{self, Edit, Evidence, Hypothesis, NBest},
-        faithful::{Source, TALK, is_talk},
+        faithful::{TALK, is_talk},
+        source::Source,
         way::Way,
         wording::Wording,
     },
@@ -40,13 +41,24 @@ impl Conversation<'_> {
             Ok(n_best) => n_best,
             Err(asked) => return asked.map(|way| *way).into_iter().collect(),
         };
+        self.weighed(n_best, &evidence, wording, context).into_iter().map(|(_, way)| way).collect()
+    }
+
+    /// The ways of an n-best list, each behind the requests that were written for it, with how likely it is meant; the likeliest first.
+    pub(crate) fn weighed(
+        &self,
+        n_best: NBest,
+        evidence: &[Evidence],
+        wording: &Wording<'_>,
+        context: &Context,
+    ) -> Vec<(String, Way)> {
         let prior = self.prior(&n_best.hypotheses, wording, context);
         let utilities: Vec<f32> = evidence.iter().zip(prior).map(|(one, prior)| one.utility() + prior.ln()).collect();
         let most = if n_best.is_first_unread { DOUBTFUL } else { 1.0 };
-        let weighed = |(one, share): (Hypothesis, f32)| Way { probability: share.min(most), ..one.way };
-        let mut ways: Vec<Way> =
+        let weighed = |(one, share): (Hypothesis, f32)| (one.text, Way { probability: share.min(most), ..one.way });
+        let mut ways: Vec<(String, Way)> =
             n_best.hypotheses.into_iter().zip(evidence::probabilities(&utilities)).map(weighed).collect();
-        ways.sort_by(|one, other| other.probability.total_cmp(&one.probability));
+        ways.sort_by(|(_, one), (_, other)| other.probability.total_cmp(&one.probability));
         ways
     }
 
@@ -64,7 +76,9 @@ impl Conversation<'_> {
         let all = rewritings.iter().map(|(_, probability)| probability).sum::<f32>().max(f32::MIN_POSITIVE);
         let mut n_best = NBest { hypotheses: Vec::new(), all, is_first_unread: false };
         for (at, (text, probability)) in rewritings.iter().enumerate() {
-            for (nth, (edit, text)) in self.edited(text, &source).into_iter().enumerate() {
+            let text = self.with_back(&self.with_both_things(text, &source), wording, &source, context);
+            let text = self.with_counts(&text, wording);
+            for (nth, (edit, text)) in self.edited(&text, &source).into_iter().enumerate() {
                 let is_likeliest = at == 0 && nth == 0;
                 let Some(way) = self.of_rewriting(&text, *probability, wording, context) else {
                     if is_likeliest && self.names_unknown(&text) {
@@ -83,6 +97,7 @@ impl Conversation<'_> {
                     None => {
                         let is_unfaithful = self.is_unfaithful(&text, &source);
                         let outcome = self.becomes(&way);
+                        let unspoken = self.unspoken(&text, &source);
                         n_best.hypotheses.push(Hypothesis {
                             way,
                             text,
@@ -90,6 +105,7 @@ impl Conversation<'_> {
                             edit,
                             outcome,
                             is_unfaithful,
+                            unspoken,
                         });
                     }
                 }
@@ -109,9 +125,10 @@ impl Conversation<'_> {
 
     /// What the rewriter wrote, without what it cannot know, and what else may be meant by that.
     fn edited(&self, text: &str, source: &Source) -> Vec<(Edit, String)> {
-        let text = self.without_invented_denial(&self.with_rooms_there(text, source), source);
+        let text = self.with_either(&self.with_rooms_there(text, source), source);
+        let text = self.without_invented_denial(&text, source);
         let known = |text: &str| self.with_this_room(&self.without_invention(text, source), source);
-        let renamed = self.with_things_said(&text, source);
+        let renamed = self.with_things_meant(&self.with_things_said(&text, source), source);
         let first = (if renamed == text { Edit::Kept } else { Edit::Renamed }, known(&renamed));
         let swapped = self.with_thing_swapped(&text, source).map(|text| (Edit::Swapped, known(&text)));
         let without_means = (Edit::WithoutMeans, self.without_means(&first.1, source));

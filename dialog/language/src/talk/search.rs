@@ -142,7 +142,7 @@ impl Conversation<'_> {
         let said = &target.said;
         let reply = match &leg {
             _ if target.is_hasty => "I look around first.".to_owned(),
-            _ if is_new => format!("I have not seen {said} yet, so I look for it."),
+            _ if is_new => format!("I have not seen {said} yet, so I look for {}.", prose::it(said)),
             Some(leg) if leg.room != before && !search.announced.contains(&leg.room) => {
                 search.announced.push(leg.room);
                 format!("I do not see {said} here. I look in the {}.", leg.room.name_in(self.catalog))

@@ -75,7 +75,7 @@ impl Conversation<'_> {
                 return Some(self.answerer(context, 0).said());
             }
             let steps = match context.failed.take() {
-                Some(failure) => std::iter::once(failure.step).chain(failure.rest).collect(),
+                Some(failure) => failure.again(self.scene),
                 // As things are now: what is switched on already is not switched once more.
                 None if !context.request.is_empty() => {
                     let consent = Consent { is_agreed: true, ..Consent::default() };

@@ -1,6 +1,6 @@
 //! What somebody says of what the robot asked about: a description, a place, a direction.
 
-use cohabit_cdf::ObjectId;
+use cohabit_cdf::{Fluid, ObjectId, Property};
 
 use crate::{
     context::{Context, Pending, search::Consent},
@@ -9,9 +9,10 @@ use crate::{
     read::{
         clause::{Clause, Part},
         hearing,
-        phrase::{Phrase, Relation},
+        phrase::{Phrase, Relation, RelationKind},
         reader::Reader,
-        slot, tidy,
+        slot::{self, Role},
+        tidy,
     },
     say::ask,
     talk::{asked::Open, conversation::Conversation},
@@ -119,6 +120,9 @@ impl Conversation<'_> {
             let meant = ground.one(&told, &Want::place(Intent::Find, &[], None)).ok()?;
             return Some(self.settle(open, meant, context));
         }
+        if let Some(vessel) = self.vessel_told(&told, &open, context) {
+            return Some(self.settle(open, vessel, context));
+        }
         let said = slot::phrase_mut(&mut open.clauses, open.slot)?;
         describe_by(said, told);
         let consent = Consent { is_agreed: true, ..open.consent };
@@ -130,6 +134,16 @@ impl Conversation<'_> {
             }
             _ => Some(self.plan(open.clauses, consent, context)),
         }
+    }
+
+    /// The vessel that what is to be poured is said to be in: tea is no thing of its own there, and the pot is what is poured.
+    fn vessel_told(&self, told: &Phrase, open: &Open, context: &Context) -> Option<ObjectId> {
+        let is_poured = open.slot.role == Role::Object(0)
+            && open.clauses.get(open.slot.clause).is_some_and(|clause| clause.intent == Intent::Pour);
+        let inside = told.relations.iter().find(|relation| relation.kind == RelationKind::Inside)?;
+        let want = Want::place(Intent::Use, &[Property::Fillable], None);
+        let vessel = self.ground(&context.focus).one(&inside.to, &want).ok().filter(|_| is_poured)?;
+        self.scene.object(vessel).is_some_and(|object| object.fluid != Fluid::None).then_some(vessel)
     }
 
     /// What it looks like was said: a thing that looks so is meant.
@@ -252,7 +266,16 @@ impl Conversation<'_> {
 
     /// The phrase that an answer consists of, after `i mean` or `take`; `None` if there is more to it.
     pub(crate) fn answer_phrase(&self, words: &[String]) -> Option<Phrase> {
+        let spelt = self.with_apostrophe(words);
+        let words = spelt.as_deref().unwrap_or(words);
         self.phrase_of(words).or_else(|| self.phrase_of(&as_description(words)?))
+    }
+
+    /// `its in the teapot`, which has lost its apostrophe: `it is in the teapot`; nothing, where none is lost.
+    fn with_apostrophe(&self, words: &[String]) -> Option<Vec<String>> {
+        let (_, rest) = words.split_first().filter(|(its, _)| *its == "its")?;
+        self.lexicon.prepositions.longest(rest)?;
+        Some(["it", "is"].map(str::to_owned).into_iter().chain(rest.iter().cloned()).collect())
     }
 
     fn phrase_of(&self, words: &[String]) -> Option<Phrase> {

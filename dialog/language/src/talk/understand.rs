@@ -16,12 +16,16 @@ use crate::{
         clause::{self, Clause, Part},
         parts,
         phrase::{Phrase, Place, RelationKind},
-        question, segments, slot, tidy, wish,
+        question, segments, tidy, wish,
     },
     say::{ask, examples, reply},
     stop::{self, Stop, said::Firmness},
-    talk::{conversation::Conversation, room_kind, way::Way},
-    understanding::{Asking, Step, Understanding},
+    talk::{
+        conversation::Conversation,
+        halted::{LEAVES_AS_IS, is_heeded, stops},
+        room_kind,
+    },
+    understanding::{Asking, Understanding},
     words::{
         intent::Intent,
         lexicon::Small,
@@ -31,10 +35,8 @@ use crate::{
     },
 };
 
-/// What it says when it stops.
-const STOPS: &str = "OK, I stop.";
-/// What it says where something is to stay as it is.
-const LEAVES_AS_IS: &str = "All right, I leave it as it is.";
+/// What it says besides where an answer chose nothing, and it has to ask the same again.
+const NAME_ONE: &str = "Name one of them, or say its number.";
 /// What stands between two of which one is asked for, and what follows it where there is no second one: `is it hot or what?`
 const OR: &str = "or";
 const NO_SECOND: [&str; 5] = ["what", "not", "no", "?", "something"];
@@ -49,6 +51,7 @@ impl Conversation<'_> {
             return self.stopped("", context);
         }
         let (understanding, sureness) = self.understand_hinted(utterance, context);
+        let understanding = self.not_asked_twice(understanding, context);
         // Who asks for something else is not followed any longer.
         context.follows |=
             followed && !matches!(understanding, Understanding::Plan { .. } | Understanding::Stop { .. });
@@ -56,6 +59,32 @@ impl Conversation<'_> {
         let is_lost = matches!(understanding, Understanding::Refusal { is_lost: true, .. });
         context.sureness = if is_lost { 0.0 } else { sureness };
         self.with_a_look(utterance, understanding, context)
+    }
+
+    /// A question is not asked twice in a row in the same words: what nobody tells the place of is looked for, as was offered, and who
+    /// is to choose is told how.
+    fn not_asked_twice(&self, understanding: Understanding, context: &mut Context) -> Understanding {
+        let is_asked_again = |text: &str| matches!(context.lines.last(), Some((true, last)) if last.ends_with(text));
+        if !matches!(&understanding, Understanding::Question { text, .. } if is_asked_again(text)) {
+            return understanding;
+        }
+        match context.pending.take() {
+            Some(Pending::Where { clauses, slot, consent }) => {
+                let later = std::mem::take(&mut context.later);
+                let looks = self.look_for(clauses, slot, consent, context);
+                context.keep(later, looks)
+            }
+            pending => {
+                let is_choice = match &pending {
+                    Some(Pending::Which { candidates, .. }) => candidates.len() > 1,
+                    Some(Pending::Offer { plans }) => plans.len() > 1,
+                    Some(Pending::Guess { guesses }) => guesses.len() > 1,
+                    _ => false,
+                };
+                context.pending = pending;
+                if is_choice { understanding.before(NAME_ONE) } else { understanding }
+            }
+        }
     }
 
     /// Whether it asks which of two is so: no yes says that.
@@ -102,79 +131,9 @@ impl Conversation<'_> {
                 .asked_at_rest(&stop, utterance, context)
                 .unwrap_or_else(|| (self.stopped(&stop.rest, context), 1.0));
         }
-        self.dropped(utterance, context).unwrap_or_else(|| self.understand_whole(utterance, context))
-    }
-
-    /// `never mind the mug, bring me the plate instead`, of a robot that is at that: it stops, whatever comes of what else is said. A question
-    /// or an answer alone would leave it at what nobody wants any longer.
-    fn dropped(&self, utterance: &str, context: &mut Context) -> Option<(Understanding, f32)> {
-        let is_free = !context.is_busy() || context.must_be_answered();
-        let dropped = stop::find_dropped(utterance).filter(|dropped| !is_free && self.is_at(&dropped.what, context))?;
-        let asks = self.asks_for_anything(&dropped.rest);
-        // `forget it, the red one` asks by what it names.
-        if !asks && self.names_anything(&self.lexicon.normalise(&dropped.rest).0) {
-            return None;
-        }
-        let stopped = self.stopped("", context);
-        if !asks {
-            return Some((stopped, 1.0));
-        }
-        let (then, sureness) = self.understand_whole(&dropped.rest, context);
-        let then = match then {
-            Understanding::Stop { then, .. } => then,
-            then => Some(Box::new(then)),
-        };
-        Some((Understanding::Stop { reply: stopped.reply().to_owned(), then }, sureness))
-    }
-
-    /// Whether what the robot is at is about a thing of these words, or the words name none.
-    fn is_at(&self, what: &str, context: &Context) -> bool {
-        let Some(phrase) = question::named(self.lexicon, &self.lexicon.normalise(what).0) else {
-            return what.is_empty();
-        };
-        let is_named = |other: &Phrase| other.namings.iter().any(|naming| phrase.naming(naming.class).is_some());
-        let is_touched = |step: &Step| {
-            let object = step.object().and_then(|id| self.scene.object(id));
-            object.is_some_and(|object| phrase.naming(object.class).is_some())
-        };
-        context.request.iter().flat_map(slot::named).any(is_named) || context.running.iter().any(is_touched)
-    }
-
-    /// `that will do, off with it`, to a robot that does nothing: what is asked for beside the stop, said before it or after it.
-    fn asked_at_rest(&self, stop: &Stop, utterance: &str, context: &mut Context) -> Option<(Understanding, f32)> {
-        if stop.is_all || context.is_busy() || context.pending.is_some() || context.awaits() {
-            return None;
-        }
-        let ways = self.rewritten(&self.wording(utterance), context, None);
-        if ways.first().is_none_or(Way::stops) {
-            return None;
-        }
-        let mut then = context.clone();
-        let understood = self.understand_whole(utterance, &mut then);
-        let is_reply = matches!(understood.0, Understanding::Plan { .. } | Understanding::Answer { .. });
-        is_reply.then(|| {
-            *context = then;
-            understood
-        })
-    }
-
-    /// It stops, and then does what else was asked for.
-    pub(crate) fn stopped(&self, rest: &str, context: &mut Context) -> Understanding {
-        context.pending = None;
-        context.halt();
-        if !context.running.is_empty() && context.last_plan.ends_with(&context.running) {
-            context.left_undone = context.running.len();
-        }
-        context.running.clear();
-        context.failed = None;
-        context.search = None;
-        context.awaited.clear();
-        context.later.clear();
-        context.agreed = None;
-        // A reason for it is taken for many things, but it is no question.
-        let asks = self.asks_for_anything(rest) || rest.contains('?') && self.is_rewritten_as_request(rest, context);
-        let then = asks.then(|| Box::new(self.understand_whole(rest, context).0));
-        Understanding::Stop { reply: STOPS.to_owned(), then }
+        self.dropped(utterance, context)
+            .or_else(|| self.taken_back(utterance, context))
+            .unwrap_or_else(|| self.understand_whole(utterance, context))
     }
 
     /// Whether there is a request or a question in a text, rather than the reason for a stop.
@@ -306,6 +265,19 @@ impl Conversation<'_> {
         }
         if let Some(understanding) = self.on_condition(words, context) {
             return understanding;
+        }
+        if let Some(questions) = self.questions_asked(words) {
+            let understand = |text: &str, context: &mut Context| Some(self.understand_said(text, context));
+            let answers = self.one_after_the_other(questions, context, understand);
+            return answers.unwrap_or_else(|| self.unclear(&[]));
+        }
+        // `why do you need a computer for it, could you not press a button?`
+        if let Some(question) = self.asked_why(words).and_then(|asked| question::read(self.lexicon, asked)) {
+            return self.answer(&question, context);
+        }
+        // `so this is the lab! What else is in here?`
+        if let Some(question) = self.asked_alone(words).and_then(|asked| question::read(self.lexicon, asked)) {
+            return self.answer(&question, context);
         }
         // `when you get a minute, bring me the knife` asks for no time.
         let is_asked_to = |question: &question::Question| {
@@ -444,21 +416,4 @@ impl Conversation<'_> {
             Err(_) => ask::what(),
         }
     }
-}
-
-/// Whether a stop is meant as one: "leave it" may answer the robot's question, and "that's plenty" and "never mind" say nothing to a
-/// robot that does nothing.
-fn is_heeded(stop: &Stop, context: &Context) -> bool {
-    match stop.firmness {
-        Firmness::Firm => true,
-        Firmness::Weak => !context.must_be_answered() && (context.is_busy() || stop.is_plain),
-        Firmness::Dismissal => !context.must_be_answered() && (context.is_busy() || context.awaits()),
-    }
-}
-
-/// Whether nothing but to stop is asked for.
-fn stops(parts: &[Part]) -> bool {
-    let mut asked =
-        parts.iter().filter_map(|part| if let Part::Clause(clause) = part { Some(clause) } else { None }).peekable();
-    asked.peek().is_some() && asked.all(|clause| clause.intent == Intent::Stop)
 }

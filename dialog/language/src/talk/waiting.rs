@@ -3,20 +3,23 @@
 //!
 //! Whoever holds the conversation calls [`crate::Language::wake`] now and then, with the time; until then nothing is done.
 
-use cohabit_cdf::ObjectId;
+use cohabit_cdf::{ObjectId, Property, StateFlag};
 
 use crate::{
     context::{
         Context,
         awaited::{Awaited, Until},
+        search::Consent,
     },
-    read::tidy,
+    ground::want::Want,
+    known::describe,
+    read::{clause::Clause, phrase::Phrase, reader::Reader, tidy},
     talk::{
         condition::{Truth, trimmed},
         conversation::Conversation,
     },
     understanding::Understanding,
-    words::{prose, token},
+    words::{intent::Intent, prose, token},
 };
 
 /// The longest that is waited for something to be so, s.
@@ -30,15 +33,20 @@ struct Said {
     at: usize,
     until: Until,
     then: Vec<String>,
+    /// What is to run meanwhile.
+    runs: Option<Phrase>,
 }
 
 impl Conversation<'_> {
     /// What was said, if anything of it is to be done later.
     pub(crate) fn waits(&self, words: &[String], context: &mut Context) -> Option<Understanding> {
-        let Said { at, until, then } = self.said_of_waiting(words)?;
+        let Said { at, until, then, runs } = self.said_of_waiting(words)?;
         let before = trimmed(&words[..at]);
         if before.is_empty() {
-            return Some(self.wait_for(until, &then, context));
+            return Some(match runs.and_then(|phrase| self.machine_meant(&phrase, context)) {
+                Some(machine) => self.run_until(machine, until, then, context),
+                None => self.wait_for(until, &then, context),
+            });
         }
         let understanding = self.understand_all(tidy::tidied(self.lexicon, before), context);
         Some(match &understanding {
@@ -120,6 +128,42 @@ impl Conversation<'_> {
         }
     }
 
+    /// What is to run: the machine that is named, or of those spoken of the last that can be switched.
+    fn machine_meant(&self, phrase: &Phrase, context: &Context) -> Option<ObjectId> {
+        if !phrase.is_bare_pronoun() {
+            return self.ground(&context.focus).one(phrase, &Want::object(Intent::TurnOn)).ok();
+        }
+        let is_machine = |id: &ObjectId| {
+            let object = self.scene.object(*id);
+            object.is_some_and(|object| self.catalog.class(object.class).has(Property::Toggleable))
+        };
+        context.focus.recent.iter().chain(&context.focus.place).copied().find(is_machine)
+    }
+
+    /// Has a machine run until then: it is turned on, if it is off, and off again, if it does not go off by itself.
+    fn run_until(&self, machine: ObjectId, until: Until, then: Vec<String>, context: &mut Context) -> Understanding {
+        let the = describe::short(self.catalog, self.scene, machine);
+        let known = self.scene.object(machine);
+        let then = match known.filter(|known| self.devices.stays_on(known.class)) {
+            Some(_) if then.is_empty() => token::words(&format!("turn off {the}")),
+            Some(_) => token::words(&format!("turn off {the}. {}", token::sentence(&then))),
+            None => then,
+        };
+        if known.is_some_and(|known| known.has(StateFlag::Toggled)) {
+            return self.wait_for(until, &then, context);
+        }
+        let words = until.in_words();
+        let wait = match until {
+            Until::Seconds(_) => format!("wait for {words}"),
+            Until::So(_) => format!("wait until {words}"),
+        };
+        let wait = if then.is_empty() { wait } else { format!("{wait}, then {}", token::sentence(&then)) };
+        let phrase = Phrase { text: the, chosen: Some(machine), ..Phrase::default() };
+        let clause = Clause::about(Intent::TurnOn, Intent::TurnOn.verb(), phrase);
+        let understanding = self.plan(vec![clause], Consent::default(), context);
+        context.keep(vec![wait], understanding)
+    }
+
     fn wait_for(&self, until: Until, then: &[String], context: &mut Context) -> Understanding {
         let then = tidy::tidied(self.lexicon, then);
         if let Until::So(claim) = &until {
@@ -157,16 +201,36 @@ impl Conversation<'_> {
         };
         let said = (0..words.len()).filter(begins).find_map(|at| {
             let (until, then) = self.timed(&words[at..]).or_else(|| self.awaits(&words[at..]))?;
-            Some(Said { at, until, then })
+            let runs = self.run_begun(&words[at..]).map(|(_, machine)| machine);
+            Some(Said { at, until, then, runs })
         });
         said.or_else(|| self.put_last(words))
+    }
+
+    /// How many words begin a wait.
+    fn wait_begun(&self, words: &[String]) -> Option<usize> {
+        let runs = self.run_begun(words).map(|(length, _)| length);
+        runs.or_else(|| self.lexicon.waiting.waits.longest(words).map(|(length, ())| length))
+    }
+
+    /// How many words say that something is to run meanwhile, and what: `let it run`, `leave the oven on for`, `run the fan for`.
+    fn run_begun(&self, words: &[String]) -> Option<(usize, Phrase)> {
+        let said = &self.lexicon.waiting;
+        let lets = said.lets.longest(words).map(|(length, ())| length);
+        let lead = lets.or_else(|| said.runs.longest(words).map(|(length, ())| length))?;
+        let mut reader = Reader { at: lead, ..Reader::new(self.lexicon, words) };
+        let machine = reader.phrase()?;
+        let table = if lets.is_some() { &said.running } else { &said.lasting };
+        let tail = table.longest(reader.rest()).map(|(length, ())| length);
+        let tail = if lets.is_some() { tail? } else { tail.unwrap_or(0) };
+        Some((reader.at + tail, machine))
     }
 
     /// `wait ten seconds, then close it`; `in ten seconds close it`.
     fn timed(&self, words: &[String]) -> Option<(Until, Vec<String>)> {
         let said = &self.lexicon.waiting;
         let delay = said.delays.longest(words).map(|(length, ())| length);
-        let length = said.waits.longest(words).map(|(length, ())| length).or(delay)?;
+        let length = self.wait_begun(words).or(delay)?;
         let mut rest = &words[length..];
         while let Some((about, ())) = said.about.longest(rest) {
             rest = &rest[about..];
@@ -182,7 +246,7 @@ impl Conversation<'_> {
     /// `wait until the mug is full, then bring it`; `when the mug is full, bring it`.
     fn awaits(&self, words: &[String]) -> Option<(Until, Vec<String>)> {
         let said = &self.lexicon.waiting;
-        let waits = said.waits.longest(words).map_or(0, |(length, ())| length);
+        let waits = self.wait_begun(words).unwrap_or(0);
         let tells = said.tells.longest(words).map_or(0, |(length, ())| length);
         let until = said.until.longest(&words[waits..]).filter(|_| waits > 0).map(|(length, ())| waits + length);
         let told = said.whens.longest(&words[tells..]).filter(|_| tells > 0).map(|(length, ())| tells + length);
@@ -218,7 +282,7 @@ impl Conversation<'_> {
             self.lexicon.waiting.delays.longest(&words[at..])?;
             let (until, rest) = self.timed(&words[at..])?;
             let then = trimmed(&words[..at]);
-            (rest.is_empty() && self.is_request(then)).then(|| Said { at: 0, until, then: then.to_vec() })
+            (rest.is_empty() && self.is_request(then)).then(|| Said { at: 0, until, then: then.to_vec(), runs: None })
         });
         if delayed.is_some() {
             return delayed;
@@ -230,7 +294,7 @@ impl Conversation<'_> {
             return None;
         }
         let claim = self.claim(claim, then)?;
-        Some(Said { at: 0, until: Until::So(claim), then: then.to_vec() })
+        Some(Said { at: 0, until: Until::So(claim), then: then.to_vec(), runs: None })
     }
 
     /// Whether the robot would see it become so: it sees what that is about.

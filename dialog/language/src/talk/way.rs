@@ -1,6 +1,6 @@
 //! A way to understand an utterance.
 
-use cohabit_cdf::{Action, GoToTarget, Verb};
+use cohabit_cdf::{Action, GoToTarget, ObjectId, Verb};
 
 use crate::{
     context::{Context, Guess, Pending, search::Search},
@@ -97,20 +97,25 @@ impl Way {
             (None, None) => {}
             _ => return false,
         }
-        let wanted: Vec<&Action> = deeds(others).collect();
-        let own: Vec<&Action> = deeds(own).collect();
+        let wanted: Vec<Action> = deeds(others).collect();
+        let own: Vec<Action> = deeds(own).collect();
         let is_whole = wanted.last().is_some_and(|last| own.contains(last));
         is_whole || !own.is_empty() && own.iter().all(|action| wanted.contains(action))
     }
 
     /// Whether it does the same again.
     pub(crate) fn repeats(&self, before: &[Step]) -> bool {
-        self.steps().is_some_and(|steps| !steps.is_empty() && deeds(steps).eq(deeds(before)))
+        self.steps().is_some_and(|steps| {
+            !steps.is_empty() && deeds(steps).eq(deeds(before)) && neighbours(steps).eq(neighbours(before))
+        })
     }
 
     /// What is left of it once another one is done, all of which it does, too: to be done behind that.
     pub(crate) fn left_after(&self, other: &Self) -> Option<(Guess, Vec<String>)> {
         let (steps, begun) = (self.steps()?, other.steps()?);
+        if self.looks() && other.looks() {
+            return self.left_after_search(other);
+        }
         if self.looks() || other.context.search.is_some() {
             return None;
         }
@@ -126,10 +131,30 @@ impl Way {
         (!says.is_empty()).then(|| (guess.called(prose::list(&says, "and then")), says))
     }
 
+    /// The same of one that begins to look for something, as the other one does.
+    fn left_after_search(&self, other: &Self) -> Option<(Guess, Vec<String>)> {
+        let (own, others) = self.context.search.as_ref().zip(other.context.search.as_ref())?;
+        let later = self.context.later.strip_prefix(other.context.later.as_slice())?;
+        let left = own.left_after(others)?;
+        let says: Vec<String> = reply::doings(&left).chain(later.iter().map(|text| prose::doing(text))).collect();
+        let search = (!left.is_empty()).then(|| Search::new(left.clone(), own.consent));
+        let guess = Context { search, request: left, later: later.to_vec(), ..self.context.clone() }.guess(&[]);
+        (!says.is_empty()).then(|| (guess.called(prose::list(&says, "and then")), says))
+    }
+
+    /// Whether it does no more than go to things.
+    pub(crate) fn only_goes(&self) -> bool {
+        let goes = |step: &Step| matches!(step.action, Action::GoTo { target: GoToTarget::Object(_) });
+        let is_all = self.context.search.is_none() && self.context.later.is_empty();
+        is_all && self.steps().is_some_and(|steps| !steps.is_empty() && steps.iter().all(goes))
+    }
+
     /// Whether it is a part of another one, or has it as a part of its own.
     pub(crate) fn is_part_or_whole(&self, other: &Self) -> bool {
         let goes_on = |one: &Self, other: &Self| match (&one.context.search, &other.context.search) {
-            (Some(own), Some(others)) => one.looks() && other.looks() && own.goes_on_from(others),
+            (Some(own), Some(others)) => {
+                one.looks() && other.looks() && own.left_after(others).is_some_and(|left| !left.is_empty())
+            }
             _ => one.left_after(other).is_some(),
         };
         goes_on(self, other) || goes_on(other, self)
@@ -151,7 +176,7 @@ impl Way {
     pub(crate) fn only_looks(&self) -> bool {
         let looks = |step: &Step| match step.action {
             Action::Interact { verb, .. } => matches!(verb, Verb::Examine | Verb::Scan),
-            Action::PickUp { .. } | Action::Place { .. } => false,
+            Action::PickUp { .. } | Action::Place { .. } | Action::PlaceBeside { .. } => false,
             _ => true,
         };
         let is_asked = |clause: &&Clause| {
@@ -201,9 +226,9 @@ impl Way {
 }
 
 /// What is done but for doors, and for what is in the hand at the end: what follows takes what it needs.
-fn outcome(steps: &[Step]) -> Vec<&Action> {
-    let is_door = |action: &&Action| matches!(action, Action::Interact { verb: Verb::Open | Verb::Close, .. });
-    let mut done: Vec<&Action> = deeds(steps).filter(|action| !is_door(action)).collect();
+fn outcome(steps: &[Step]) -> Vec<Action> {
+    let is_door = |action: &Action| matches!(action, Action::Interact { verb: Verb::Open | Verb::Close, .. });
+    let mut done: Vec<Action> = deeds(steps).filter(|action| !is_door(action)).collect();
     if matches!(done.last(), Some(Action::PickUp { .. })) {
         done.pop();
     }
@@ -217,10 +242,20 @@ fn left_of(steps: &[Step], begun: &[Step]) -> Option<Vec<Step>> {
         let last = deeds(steps).skip(begins).count();
         return Some(steps[steps.len() - last..].to_vec());
     }
+    // Who does something to a thing goes to it.
+    let only_leads = |step: &&Step| {
+        let Action::GoTo { target: GoToTarget::Object(object) } = step.action else { return false };
+        steps.iter().any(|other| other.object() == Some(object) && !matches!(other.action, Action::GoTo { .. }))
+    };
+    if begun.iter().any(|step| only_leads(&step)) {
+        let needed: Vec<Step> = begun.iter().filter(|step| !only_leads(step)).cloned().collect();
+        return left_of(steps, &needed);
+    }
     let mut wanted = deeds(begun).peekable();
     let mut left: Vec<Step> = Vec::new();
     for step in steps {
-        if wanted.next_if(|action| **action == step.action).is_none() && !matches!(step.action, Action::GoTo { .. }) {
+        let is_begun = wanted.next_if_eq(&step.action.beside_nothing()).is_some();
+        if !is_begun && !matches!(step.action, Action::GoTo { .. }) {
             left.push(step.clone());
         }
     }
@@ -232,27 +267,33 @@ fn left_of(steps: &[Step], begun: &[Step]) -> Option<Vec<Step>> {
     (wanted.peek().is_none() && !left.is_empty() && left.iter().all(is_apart)).then_some(left)
 }
 
-/// What these steps come to: who goes to a thing and then takes it, takes it.
-fn deeds(steps: &[Step]) -> impl Iterator<Item = &Action> {
+/// What these steps come to: who goes to a thing and then takes it, takes it; and who puts something beside a thing on a table, puts it
+/// on the table.
+fn deeds(steps: &[Step]) -> impl Iterator<Item = Action> {
     let is_on_the_way = |at: usize| match steps[at].action {
         Action::GoTo { target: GoToTarget::Object(object) } => {
             steps[at + 1..].iter().any(|step| step.object() == Some(object))
         }
         _ => false,
     };
-    (0..steps.len()).filter(move |at| !is_on_the_way(*at)).map(|at| &steps[at].action)
+    (0..steps.len()).filter(move |at| !is_on_the_way(*at)).map(move |at| steps[at].action.beside_nothing())
+}
+
+/// What these steps put things beside.
+fn neighbours(steps: &[Step]) -> impl Iterator<Item = ObjectId> {
+    steps.iter().filter_map(|step| step.action.beside())
 }
 
 /// The same without rooms that are only gone to on the way to a thing.
-fn touched(steps: &[Step]) -> impl Iterator<Item = &Action> {
+fn touched(steps: &[Step]) -> impl Iterator<Item = Action> {
     let is_of_thing =
         |action: &Action| matches!(action, Action::PickUp { .. } | Action::Place { .. } | Action::Interact { .. });
-    let own: Vec<&Action> = deeds(steps).collect();
+    let own: Vec<Action> = deeds(steps).collect();
     let is_on_the_way = |at: usize| {
         let next = own[at..].iter().find(|action| !goes_to_room(action));
-        goes_to_room(own[at]) && next.is_some_and(|action| is_of_thing(action))
+        goes_to_room(&own[at]) && next.is_some_and(is_of_thing)
     };
-    let kept: Vec<&Action> = (0..own.len()).filter(|at| !is_on_the_way(*at)).map(|at| own[at]).collect();
+    let kept: Vec<Action> = (0..own.len()).filter(|at| !is_on_the_way(*at)).map(|at| own[at]).collect();
     kept.into_iter()
 }
 

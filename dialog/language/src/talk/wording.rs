@@ -9,7 +9,7 @@ use crate::{
         clause::{Clause, Part},
         parts,
         question::{self, Question},
-        segments, tidy,
+        remark, segments, tidy, whether,
     },
     talk::{condition, conversation::Conversation},
     understanding::Understanding,
@@ -27,6 +27,9 @@ pub(crate) struct Wording<'a> {
     pub(crate) unheard: Vec<String>,
 }
 
+/// How a doubt begins, behind a question why.
+const COULD_YOU: [&str; 2] = ["could", "you"];
+
 impl Conversation<'_> {
     pub(crate) fn wording<'a>(&self, utterance: &'a str) -> Wording<'a> {
         let (words, _) = self.lexicon.normalise(utterance);
@@ -34,6 +37,55 @@ impl Conversation<'_> {
         let mut unheard = segments::unknown_words(self.lexicon, &words);
         unheard.retain(|word| !spelling::is_english(word) && !stands_apart(&words, word));
         Wording { utterance, words, tidied, unheard }
+    }
+
+    /// The sentence that asks what is here, what was done or where the robot is, where all else only says something: such a question stands
+    /// by itself, whatever is said around it.
+    pub(crate) fn asked_alone<'w>(&self, words: &'w [String]) -> Option<&'w [String]> {
+        let sentences = whether::sentences(words);
+        let stands_alone = |sentence: &&[String]| {
+            let kind = question::read(self.lexicon, sentence).map(|one| one.kind);
+            let is_one = matches!(
+                kind,
+                Some(
+                    QuestionKind::Seeing
+                        | QuestionKind::Rooms
+                        | QuestionKind::RoomCount
+                        | QuestionKind::Robot
+                        | QuestionKind::DoneSoFar
+                )
+            );
+            is_one && !self.asks_beside(sentence)
+        };
+        let at = sentences.iter().position(stands_alone)?;
+        let mut others = sentences.iter().enumerate().filter(|(other, _)| *other != at);
+        (!others.any(|(_, other)| self.asks_for_anything(&other.join(" ")))).then_some(sentences[at])
+    }
+
+    /// The questions that are asked in one sentence, where they are several and each is one that the grammar knows.
+    pub(crate) fn questions_asked(&self, words: &[String]) -> Option<Vec<String>> {
+        let asked = question::several(words);
+        let is_known = |piece: &&[String]| {
+            let read = question::read(self.lexicon, piece);
+            let is_one = read.is_some_and(|one| one.kind != QuestionKind::Unknown && knows_what_about(&one));
+            is_one && !self.asks_beside(piece)
+        };
+        let is_several = asked.len() > 1 && asked.iter().all(is_known);
+        is_several.then(|| asked.into_iter().map(|piece| format!("{}?", token::sentence(piece))).collect())
+    }
+
+    /// The words in which it is asked why the robot does something, where nothing else is asked for: `could you not just press it` is a doubt.
+    pub(crate) fn asked_why<'w>(&self, words: &'w [String]) -> Option<&'w [String]> {
+        let sentences = whether::sentences(words);
+        let asked = sentences.iter().find_map(|sentence| question::asked_why(self.lexicon, sentence))?;
+        // `why do you need it, couldn't you just do without?` orders nothing either.
+        let is_beside = |piece: &[String]| asked.ends_with(piece) && piece.starts_with(&COULD_YOU.map(str::to_owned));
+        let is_doubt =
+            |piece: &[String]| is_beside(piece) || piece.iter().any(|word| self.lexicon.ifs.negations.contains(word));
+        let is_why = |piece: &[String]| question::asked_why(self.lexicon, piece).is_some();
+        let mut pieces = words.split(|word| token::is_punctuation(word) || word == "and");
+        let asks = |piece: &[String]| !is_doubt(piece) && !is_why(piece) && self.asks_for_anything(&piece.join(" "));
+        (!pieces.any(asks)).then_some(asked)
     }
 
     /// What is said behind thanks or a greeting.
@@ -50,6 +102,9 @@ impl Conversation<'_> {
     /// Whether the grammar reads it to the last word, as one that it knows: requests, or a question, or small talk.
     pub(crate) fn is_plain(&self, Wording { tidied, .. }: &Wording<'_>) -> bool {
         if !self.small(tidied).is_empty() || self.chat(tidied).is_some() {
+            return true;
+        }
+        if self.asked_alone(tidied).is_some() || self.questions_asked(tidied).is_some() {
             return true;
         }
         // `thanks! did you close the fridge`
@@ -110,6 +165,14 @@ impl Conversation<'_> {
     fn asks_beside(&self, words: &[String]) -> bool {
         let parts = words.split(|word| token::is_punctuation(word) || word == "and").filter(|part| !part.is_empty());
         parts.skip(1).any(|part| self.asks_for_anything(&part.join(" ")))
+    }
+
+    /// What is asked for, without what somebody says of themselves beside it; nothing, where nobody does.
+    pub(crate) fn without_remark(&self, utterance: &str) -> Option<String> {
+        if utterance.chars().nth(token::MAX_CHARS).is_some() {
+            return None;
+        }
+        remark::parted(self.lexicon, utterance).filter(|rest| self.asks_for_anything(rest))
     }
 
     /// Whether any of these words names a thing or a room.

@@ -9,7 +9,7 @@ use crate::{
     known::{contents, describe},
     plan::settle::{self, Settled},
     read::{
-        chatter,
+        asked_about, chatter,
         clause::{Clause, Part},
         parts,
         phrase::{Phrase, Place},
@@ -44,7 +44,8 @@ impl Conversation<'_> {
             let parts = parts::parts(self.lexicon, self.catalog, words);
             let is_safe = does_ask && !parts.iter().any(|part| matches!(part, Part::Clause(_)));
             // What is a question anyway is read with what was said before it, where it begins with that.
-            if is_safe && (at == 0 || question::read(self.lexicon, words).is_some()) {
+            let is_deed = whether::put_actively(self.lexicon, asked).is_some();
+            if is_safe && !is_deed && (at == 0 || question::read(self.lexicon, words).is_some()) {
                 return None;
             }
             // `Iced coffee for the boss! Is it cold?` asks about what was handled, `the red mug. Is it cold?` about that.
@@ -92,7 +93,7 @@ impl Conversation<'_> {
             }
             // `did somebody leave the toaster on`
             Some(question) if asked_state(self.lexicon, &question.rest).is_some() => {
-                let about = question::named(self.lexicon, &question.rest);
+                let about = asked_about::named(self.lexicon, &question.rest);
                 self.answer(&Question { kind: QuestionKind::State, about, ..question }, context)
             }
             _ => Understanding::answer("I cannot say. Tell me to do it, and I will try."),
@@ -108,7 +109,7 @@ impl Conversation<'_> {
         let rest: Vec<String> = done[at + 1..].iter().filter(|word| !token::is_punctuation(word)).cloned().collect();
         asked_state(self.lexicon, &rest).filter(|_| is_asked)?;
         let it = || Reader::new(self.lexicon, &rest).phrase().filter(|phrase| phrase.pronoun.is_some());
-        let about = question::named(self.lexicon, &rest).or_else(it)?;
+        let about = asked_about::named(self.lexicon, &rest).or_else(it)?;
         let is_any = about.is_any || about.is_all || prose::is(&about.text) == "are";
         let about = Phrase { is_any, is_all: false, ..about };
         Some(Question { is_whether: true, ..Question::new(QuestionKind::State, Some(about), rest) })
@@ -162,17 +163,23 @@ impl Conversation<'_> {
             format!("{the} {} {state}", prose::is(&the))
         });
         let is_put = clause.intent == Intent::Place && !clause.places.is_empty();
+        // `has the milk been put in the fridge` asks how things are, whoever did it.
+        let is_passive = whether::put_actively(self.lexicon, asked).is_some();
+        let is_there = there.is_some() && self.scene.object(id).is_some_and(|object| object.parent == there);
+        let is_otherwise_so = is_passive && !did && (state.as_ref().is_some_and(is_so) || is_there);
         let is_undone = state.as_ref().is_some_and(|state| !is_so(state));
         let text = match (did, stated) {
             (true, Some(stated)) if is_undone => format!("I did, but now {stated}."),
             (true, Some(stated)) => format!("Yes, I did: {stated}."),
+            (false, Some(stated)) if is_otherwise_so => format!("Yes, {stated}."),
+            (false, None) if is_otherwise_so => format!("Yes, {place}."),
             (false, Some(stated)) if state.as_ref().is_some_and(is_so) => format!("No, but {stated}."),
             (false, Some(stated)) => format!("No, {stated}."),
             (true, None) => format!("Yes, I did: {place}."),
             (false, None) if is_put => format!("No, {place}."),
             (false, None) => format!("No, not that I remember: {place}."),
         };
-        Some(Understanding::whether(did, text, vec![id]))
+        Some(Understanding::whether(did || is_otherwise_so, text, vec![id]))
     }
 
     /// `did you wash the plate and the cup`: whether it did so to each of them, or which of them it left out.
@@ -249,7 +256,7 @@ impl Conversation<'_> {
         if !words.past.contains(helper) || subject != "you" {
             return None;
         }
-        let question = Question::new(QuestionKind::Done, question::named(self.lexicon, done), Vec::new());
+        let question = Question::new(QuestionKind::Done, asked_about::named(self.lexicon, done), Vec::new());
         let ground = self.ground(&context.focus);
         let id = ground.one(question.about.as_ref()?, &Want::place(Intent::Find, &[], None)).ok()?;
         let has_touched = context.deeds.told_of(id).is_some();

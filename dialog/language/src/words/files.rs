@@ -20,6 +20,9 @@ use crate::words::{
     token,
 };
 
+/// A word behind which others are read as within a sentence: a verb at its beginning would be a request.
+const WITHIN: &str = "it";
+
 #[derive(Deserialize)]
 struct Words {
     words: Vec<String>,
@@ -37,6 +40,7 @@ struct WordFile {
     one_of: Words,
     link: Words,
     here: Words,
+    nooks: Words,
     degrees: Words,
     viewpoints: Words,
     negation: Words,
@@ -53,6 +57,7 @@ struct WordFile {
     motion_spare: Words,
     reports: Words,
     corrections: Words,
+    instead: Words,
     exits: Words,
     tells: Words,
     conditions: Words,
@@ -62,6 +67,7 @@ struct WordFile {
     pronouns: BTreeMap<Pronoun, Vec<String>>,
     prepositions: BTreeMap<Preposition, Vec<String>>,
     sides: BTreeMap<Side, Vec<String>>,
+    sizes: BTreeMap<Side, Vec<String>>,
     ordinals: BTreeMap<String, i32>,
     directions: BTreeMap<Direction, Vec<String>>,
     units: BTreeMap<String, f32>,
@@ -110,6 +116,9 @@ struct VerbFile {
 #[serde(deny_unknown_fields)]
 struct VerbEntry {
     intent: Intent,
+    /// The kind of things of which alone they are said.
+    #[serde(default)]
+    of: Option<String>,
     #[serde(default)]
     words: Vec<String>,
     #[serde(default)]
@@ -166,6 +175,7 @@ impl Lexicon {
         lexicon.add_word_parts(catalog);
         lexicon.add_kinds(catalog, &file.kinds);
         lexicon.build_vocabulary();
+        lexicon.normalise_shapes();
         lexicon.build_sounds();
         lexicon
     }
@@ -183,6 +193,7 @@ impl Lexicon {
             (&mut self.one_of, &file.one_of),
             (&mut self.link, &file.link),
             (&mut self.here, &file.here),
+            (&mut self.nooks, &file.nooks),
             (&mut self.degrees, &file.degrees),
             (&mut self.viewpoints, &file.viewpoints),
             (&mut self.negation, &file.negation),
@@ -197,6 +208,7 @@ impl Lexicon {
             (&mut self.motion_spare, &file.motion_spare),
             (&mut self.reports, &file.reports),
             (&mut self.corrections, &file.corrections),
+            (&mut self.instead, &file.instead),
             (&mut self.exits, &file.exits),
             (&mut self.tells, &file.tells),
             (&mut self.conditions, &file.conditions),
@@ -216,6 +228,7 @@ impl Lexicon {
         add_all(&mut self.pronouns, &file.pronouns);
         add_all(&mut self.prepositions, &file.prepositions);
         add_all(&mut self.sides, &file.sides);
+        add_all(&mut self.sizes, &file.sizes);
         add_all(&mut self.directions, &file.directions);
         file.ordinals.iter().for_each(|(word, value)| self.ordinals.insert(word, *value));
         file.units.iter().for_each(|(word, value)| self.units.insert(word, *value));
@@ -294,6 +307,9 @@ impl Lexicon {
                 if !intents.contains(&entry.intent) {
                     intents.push(entry.intent);
                 }
+                if let Some(kind) = &entry.of {
+                    self.verbs_of_kinds.entry(word).push((entry.intent, kind.clone()));
+                }
             }
             for phrase in &entry.split {
                 let mut head = token::words(phrase);
@@ -321,6 +337,32 @@ impl Lexicon {
             entry.words.iter().for_each(|words| self.chat.insert(words, entry.reply.clone()));
         }
         self.talk_replies = file.talk;
+    }
+
+    /// The shapes of questions as utterances that have them are read.
+    fn normalise_shapes(&mut self) {
+        let mut shapes = std::mem::take(&mut self.question_shapes);
+        for shape in &mut shapes {
+            let begins = self.as_read(shape.begins.phrases(), "");
+            begins.iter().for_each(|begin| shape.begins.insert(begin, ()));
+            // A word alone may be another part of speech as it is read: `switches`.
+            let has = self.as_read(shape.has.phrases(), WITHIN);
+            has.iter().filter(|words| words.contains(' ')).for_each(|words| shape.has.insert(words, ()));
+            let ends: Vec<Vec<String>> = shape.ends.iter().map(|end| token::words(end)).collect();
+            shape.ends.extend(self.as_read(ends.iter().map(Vec::as_slice), WITHIN));
+        }
+        self.question_shapes = shapes;
+    }
+
+    /// Phrases as they are read behind a word, without it, where that is otherwise than they are written. What would be taken for a slip
+    /// stays as it is.
+    fn as_read<'p>(&self, phrases: impl Iterator<Item = &'p [String]>, before: &str) -> Vec<String> {
+        let read = |phrase: &[String]| {
+            let (words, repairs) = self.normalise(&format!("{before} {}", phrase.join(" ")));
+            let words = words.strip_prefix(token::words(before).as_slice())?;
+            (repairs == 0 && words != phrase && !words.is_empty()).then(|| words.join(" "))
+        };
+        phrases.filter_map(read).collect()
     }
 
     fn build_sounds(&mut self) {
@@ -360,6 +402,7 @@ impl Lexicon {
             &self.one_of,
             &self.link,
             &self.here,
+            &self.nooks,
             &self.degrees,
             &self.viewpoints,
             &self.negation,
@@ -434,6 +477,18 @@ fn parse<T: serde::de::DeserializeOwned>(text: &str) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shapes_of_questions_are_written_plainly_and_found_in_what_is_read() {
+        let lexicon = Lexicon::new(&Catalog::builtin());
+        let has = |words: &[String]| lexicon.question_shapes.iter().any(|shape| shape.begins.exact(words).is_some());
+        let begins =
+            ["what rooms are there", "list all the rooms", "is anything wrong with", "tell me everything you did"];
+        for begin in begins {
+            let (read, _) = lexicon.normalise(begin);
+            assert!(has(&token::words(begin)) && has(&read), "{begin}: {read:?}");
+        }
+    }
 
     #[test]
     fn only_verbs_have_a_manner() {

@@ -86,6 +86,11 @@ pub(crate) enum Preposition {
 }
 
 impl Preposition {
+    /// Whether it says that something is beside what is named after it, and not on or in it.
+    pub(crate) const fn is_beside(self) -> bool {
+        matches!(self, Self::Near | Self::LeftOf | Self::RightOf)
+    }
+
     /// How the robot says it.
     pub(crate) const fn word(self) -> &'static str {
         match self {
@@ -189,11 +194,15 @@ pub(crate) struct Lexicon {
     pub(crate) trail: PhraseTable<()>,
     pub(crate) articles: PhraseTable<()>,
     pub(crate) adjectives: PhraseTable<()>,
+    /// Words for a size, and the measure by which others of its kind are less so.
+    pub(crate) sizes: PhraseTable<Side>,
     pub(crate) all: PhraseTable<()>,
     /// Any one of several.
     pub(crate) one_of: PhraseTable<()>,
     pub(crate) link: PhraseTable<()>,
     pub(crate) here: PhraseTable<()>,
+    /// Parts of rooms that are no things.
+    pub(crate) nooks: PhraseTable<()>,
     pub(crate) degrees: PhraseTable<()>,
     pub(crate) viewpoints: PhraseTable<()>,
     pub(crate) negation: PhraseTable<()>,
@@ -211,6 +220,8 @@ pub(crate) struct Lexicon {
     pub(crate) reports: PhraseTable<()>,
     /// Before or after what was meant, where another thing was taken.
     pub(crate) corrections: PhraseTable<()>,
+    /// After a denial, before what was meant.
+    pub(crate) instead: PhraseTable<()>,
     /// After what is done to a door by who goes out by it.
     pub(crate) exits: PhraseTable<()>,
     /// Before what is to be done if what was asked about is so, or if it is not.
@@ -245,6 +256,8 @@ pub(crate) struct Lexicon {
     pub(crate) room_ids: BTreeMap<String, RoomId>,
     pub(crate) small: PhraseTable<BTreeSet<Small>>,
     pub(crate) verbs: PhraseTable<Vec<Intent>>,
+    /// Those that are said of one kind of things alone, as the tables of the world name kinds.
+    pub(crate) verbs_of_kinds: PhraseTable<Vec<(Intent, String)>>,
     /// The first words of all verbs.
     pub(crate) verb_heads: BTreeSet<String>,
     /// Those that say no more than that something is to be changed or destroyed: nobody is taken to have meant one by another word.

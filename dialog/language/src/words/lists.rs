@@ -10,6 +10,8 @@ use crate::words::table::{self, PhraseTable};
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Chatter {
+    pub(crate) remarks: PhraseTable<()>,
+    pub(crate) tellers: BTreeSet<String>,
     pub(crate) subordinators: BTreeSet<String>,
     pub(crate) before_requests: BTreeSet<String>,
     pub(crate) reports: BTreeSet<String>,
@@ -43,7 +45,11 @@ pub(crate) struct Fillers {
     pub(crate) numbered: BTreeSet<String>,
     pub(crate) pauses: PhraseTable<()>,
     pub(crate) adverbs: BTreeSet<String>,
+    pub(crate) second_thoughts: PhraseTable<()>,
+    pub(crate) takes_back: PhraseTable<()>,
+    pub(crate) leaves: PhraseTable<()>,
     pub(crate) besides: PhraseTable<()>,
+    pub(crate) suggests: PhraseTable<()>,
 }
 
 /// The words of waiting: `data/waiting.toml` says what each list is.
@@ -51,6 +57,10 @@ pub(crate) struct Fillers {
 #[serde(deny_unknown_fields)]
 pub(crate) struct WaitingWords {
     pub(crate) waits: PhraseTable<()>,
+    pub(crate) lets: PhraseTable<()>,
+    pub(crate) running: PhraseTable<()>,
+    pub(crate) runs: PhraseTable<()>,
+    pub(crate) lasting: PhraseTable<()>,
     pub(crate) tells: PhraseTable<()>,
     pub(crate) delays: PhraseTable<()>,
     pub(crate) about: PhraseTable<()>,
@@ -121,18 +131,39 @@ pub(crate) struct YesNo {
     pub(crate) modals: BTreeSet<String>,
     pub(crate) things: BTreeSet<String>,
     pub(crate) knowing: PhraseTable<()>,
+    there: PhraseTable<()>,
+    around: PhraseTable<()>,
+    stands: PhraseTable<()>,
     pub(crate) passive: BTreeSet<String>,
     pub(crate) between: BTreeSet<String>,
     filler: PhraseTable<()>,
     sound: PhraseTable<()>,
     unsound: PhraseTable<()>,
+    whole: PhraseTable<()>,
     pub(crate) done: PhraseTable<()>,
     meals: PhraseTable<()>,
     floor: BTreeSet<String>,
     pub(crate) cereals: BTreeSet<String>,
+    back: PhraseTable<()>,
+    #[serde(deserialize_with = "table::of_meanings")]
+    pub(crate) gets: PhraseTable<String>,
 }
 
 impl YesNo {
+    /// How words that follow a kind of things ask which of them there are, the longest first, and how many words do.
+    pub(crate) fn asks_which(&self, words: &[String]) -> Vec<(usize, Whereabouts)> {
+        let tables = [
+            (&self.there, Whereabouts::Anywhere),
+            (&self.around, Whereabouts::Here),
+            (&self.stands, Whereabouts::Told),
+        ];
+        let length = |table: &PhraseTable<()>| table.longest(words).map(|(length, ())| length);
+        let mut found: Vec<(usize, Whereabouts)> =
+            tables.into_iter().filter_map(|(table, whereabouts)| Some((length(table)?, whereabouts))).collect();
+        found.sort_by_key(|(length, _)| std::cmp::Reverse(*length));
+        found
+    }
+
     /// Whether words add nothing to what is claimed: `still there`.
     pub(crate) fn is_filler(&self, words: &[String]) -> bool {
         let mut left = words;
@@ -158,6 +189,16 @@ impl YesNo {
         self.is_last_of(words, &self.done)
     }
 
+    /// Whether words end by saying that something is where it was before.
+    pub(crate) fn says_back(&self, words: &[String]) -> bool {
+        self.is_last_of(words, &self.back)
+    }
+
+    /// Whether words end by saying that nothing is missing in something.
+    pub(crate) fn says_whole(&self, words: &[String]) -> bool {
+        self.is_last_of(words, &self.whole)
+    }
+
     /// Whether words say that a meal is done, and nothing else: `dinner ready yet`.
     pub(crate) fn says_meal_is_done(&self, words: &[String]) -> bool {
         let is_done =
@@ -178,6 +219,15 @@ impl YesNo {
         (1..words.len())
             .any(|at| phrases.longest(&words[at..]).is_some_and(|(length, ())| self.is_filler(&words[at + length..])))
     }
+}
+
+/// Where things are of which it is asked which there are.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Whereabouts {
+    Anywhere,
+    Here,
+    /// Where words say that follow.
+    Told,
 }
 
 /// What is said to a kind of talk that asks for nothing.

@@ -72,13 +72,11 @@ impl Lexicon {
         }
     }
 
-    /// `that box`: the cereal box too, though other things are called just that; `the cabinet`: one for medicine. Only what can be carried is
-    /// meant so, and what things are kept in.
+    /// `that box`: the cereal box too, though other things are called just that; `the cabinet`: one for medicine; `the rack`: for shoes.
+    /// Only what can be carried is meant so, what things are kept in, and what they are put on.
     fn add_heads(&mut self, catalog: &Catalog) {
-        let stores = |class: &ObjectClass| {
-            class.receptacle.as_ref().is_some_and(|kind| kind.enclosed) && !class.has(Property::Toggleable)
-        };
-        let is_meant = |class: &ClassId| self.carried.contains(class) || stores(catalog.class(*class));
+        let holds = |class: &ObjectClass| class.receptacle.is_some() && !class.has(Property::Toggleable);
+        let is_meant = |class: &ClassId| self.carried.contains(class) || holds(catalog.class(*class));
         let meant: Vec<ClassId> = (0_u16..).map(ClassId).take(catalog.classes().len()).filter(is_meant).collect();
         for class in meant {
             let words = self.replaced(&token::words(&catalog.class(class).name));

@@ -5,10 +5,16 @@ use crate::words::token::NUMBERS;
 /// Nouns that take no article.
 const MASS: [&str; 9] = ["tea", "milk", "bread", "coffee", "water", "cereal", "toast", "jelly", "peanut butter"];
 
-/// Whether a name is of several things: `the glass doors`, not `the stack of papers`.
+/// Nouns of one thing that end as those of several do.
+const SINGULAR: [&str; 9] = ["thermos", "bus", "gas", "lens", "canvas", "cactus", "atlas", "virus", "stylus"];
+
+/// What joins more to a noun: `milk from the fridge`.
+const JOINTS: [&str; 9] = ["of", "from", "in", "on", "with", "by", "at", "next", "that"];
+
+/// Whether a name is of several things: `the glass doors`, `any keys on the table`, not `the stack of papers`.
 fn is_plural(name: &str) -> bool {
-    let head = name.split(" of ").next().unwrap_or(name);
-    head.ends_with('s') && !head.ends_with("ss")
+    let last = name.split(' ').take_while(|word| !JOINTS.contains(word)).last().unwrap_or_default();
+    last.ends_with('s') && !last.ends_with("ss") && !SINGULAR.contains(&last)
 }
 
 /// What an answer says beside its yes or no, as a sentence.
@@ -31,6 +37,11 @@ pub(crate) fn it(name: &str) -> &'static str {
     if is_plural(name) { "them" } else { "it" }
 }
 
+/// What stands for a name as the subject: `it` or `they`.
+pub(crate) fn they(name: &str) -> &'static str {
+    if is_plural(name) { "they" } else { "it" }
+}
+
 /// `a, b and c`; `last` is the word before the last one.
 pub(crate) fn list(items: &[String], last: &str) -> String {
     match items {
@@ -42,11 +53,8 @@ pub(crate) fn list(items: &[String], last: &str) -> String {
 
 /// A noun with its indefinite article, or `some` where it takes none.
 pub(crate) fn indefinite(noun: &str) -> String {
-    // `milk from the fridge`
-    let is_joint = |word: &&str| ["of", "from", "in", "on", "with", "by", "at", "next", "that"].contains(word);
-    let head = noun.split(' ').take_while(|word| !is_joint(word)).collect::<Vec<_>>().join(" ");
-    let is_plural = head.ends_with('s') && !head.ends_with("ss");
-    if is_plural
+    let head = noun.split(' ').take_while(|word| !JOINTS.contains(word)).collect::<Vec<_>>().join(" ");
+    if is_plural(noun)
         || MASS.iter().any(|mass| head.strip_suffix(mass).is_some_and(|rest| rest.is_empty() || rest.ends_with(' ')))
     {
         return format!("some {noun}");
@@ -192,6 +200,18 @@ pub(crate) fn within_sentence(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_stands_for_a_name_is_of_its_number() {
+        let check = |name: &str, expected: [&str; 3]| assert_eq!([it(name), they(name), is(name)], expected, "{name}");
+        for many in ["any keys", "the building blocks", "any keys on the table", "the reading glasses in the study"] {
+            check(many, ["them", "they", "are"]);
+        }
+        for one in ["a mug", "the stack of papers", "the wine glass", "a thermos", "a bowl with grapes", "it"] {
+            check(one, ["it", "it", "is"]);
+        }
+        assert_eq!([indefinite("thermos"), indefinite("keys on the table")], ["a thermos", "some keys on the table"]);
+    }
 
     #[test]
     fn a_request_is_told_as_what_is_done() {

@@ -25,6 +25,8 @@ pub(crate) enum QuestionKind {
     Near,
     /// What lies under it or behind it.
     Under,
+    /// What is before it, which is what it aims at.
+    Before,
     Color,
     Distance,
     Text,
@@ -54,6 +56,8 @@ pub(crate) enum QuestionKind {
     Origin,
     /// Which of several is so: `which mug is red`.
     Which,
+    /// Which things of a kind there are: `which cups are on the table`.
+    OfKind,
     /// What else there is, after a list.
     Rest,
     /// What it said last.

@@ -149,7 +149,7 @@ fn bare(answer: &str) -> String {
 fn deeds(steps: &[Step]) -> Vec<String> {
     let is_deed = |step: &&Step| match step.action {
         Action::Interact { verb, .. } => !matches!(verb, Verb::Open | Verb::Close),
-        Action::GoTo { .. } | Action::PickUp { .. } | Action::Place { .. } => false,
+        Action::GoTo { .. } | Action::PickUp { .. } | Action::Place { .. } | Action::PlaceBeside { .. } => false,
         _ => true,
     };
     let mut deeds: Vec<String> = steps.iter().filter(is_deed).map(|step| format!("{:?}", step.action)).collect();

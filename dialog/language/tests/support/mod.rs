@@ -9,7 +9,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-use cohabit_cdf::{Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId, Status, state::StateFlag};
+use cohabit_cdf::{Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId, Status, catalog::Speech, state::StateFlag};
 use cohabit_language::{Asking, Context, Known, KnownGoal, KnownObject, KnownRobot, Language, Step, Understanding};
 
 /// `id | name | words | properties | colour | receptacle`: `-` none, `on`, `in` (enclosed), `key:CLASS`.
@@ -271,12 +271,19 @@ pub fn step_text(step: &Step, scene: &Known) -> String {
         Action::GoTo { target: GoToTarget::Viewpoint(room, number) } => format!("go {}_{number}", room.id()),
         Action::GoTo { target: GoToTarget::Point(point) } => format!("go {point:?}"),
         Action::PickUp { object } => format!("take {}", name(object)),
-        Action::Place { receptacle } => format!("put {}", name(receptacle)),
+        Action::Place { receptacle } | Action::PlaceBeside { receptacle, .. } => format!("put {}", name(receptacle)),
         Action::Interact { verb, object } => format!("{} {}", format!("{verb:?}").to_lowercase(), name(object)),
         Action::Highlight { object } => format!("show {}", name(object)),
         Action::Stop => "stop".to_owned(),
         Action::Drive { .. } => "drive".to_owned(),
     }
+}
+
+/// What the things of a plan are put beside.
+pub fn neighbours(understanding: &Understanding, scene: &Known) -> Vec<String> {
+    let Understanding::Plan { steps, .. } = understanding else { return Vec::new() };
+    let beside = steps.iter().filter_map(|step| scene.object(step.action.beside()?));
+    beside.map(|object| object.instance.clone()).collect()
 }
 
 /// What was understood, as one text: steps by `, `, or the kind and the words.
@@ -295,10 +302,14 @@ pub fn text(understanding: &Understanding, scene: &Known) -> String {
 
 /// The language with the rewriter; with `UNDERSTANDING=grammar` in the environment the grammar alone, to compare.
 pub fn language(catalog: Arc<Catalog>) -> Language {
+    let rewriter = match catalog.speech() {
+        Speech::Office => cohabit_rewriter::rewrite,
+        Speech::Household => cohabit_rewriter::rewrite_at_home,
+    };
     let language = Language::new(catalog);
     match std::env::var("UNDERSTANDING").as_deref() {
         Ok("grammar") => language,
-        _ => language.with_rewriter(cohabit_rewriter::rewrite),
+        _ => language.with_rewriter(rewriter),
     }
 }
 
