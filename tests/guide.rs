@@ -96,6 +96,7 @@ pages! {
     rerun: "runtime/guide/src/rerun.md",
     security: "runtime/guide/src/security.md",
     stability: "runtime/guide/src/stability.md",
+    steps: "runtime/guide/src/steps.md",
     study: "runtime/guide/src/study.md",
     tables: "runtime/guide/src/tables.md",
     talk: "runtime/guide/src/talk.md",

@@ -34,6 +34,7 @@ mod self_test;
 mod sessions;
 mod several;
 mod soak;
+mod steps;
 mod study;
 mod survey;
 mod time;

@@ -7,13 +7,14 @@ use std::{
 };
 
 use anyhow::Context as _;
-use cohabit_tables::{NOTEBOOK, Played, Summary, codebook, plots, tables, write_csv};
+use cohabit_tables::{Played, Summary, codebook, tables, write_csv};
 
 use crate::{
     failure::bad_input,
     readable_logs::ReadLogs,
     rerun,
     study::{is_left_out, is_of_practice, participants_of},
+    summing::write_plots,
     terminal::{shown, shown_json, shown_lines},
     world::WorldPacks,
 };
@@ -102,26 +103,6 @@ fn write(played: &[Played], folder: &Path, quietly: bool) -> anyhow::Result<()> 
         if !quietly {
             println!("{} rows written to {}", table.rows.len(), shown(path.display()));
         }
-    }
-    Ok(())
-}
-
-/// The script that reads the tables.
-const SCRIPT: &str = "analysis.py";
-
-/// Writes a plot of each outcome by these conditions beside the tables, and a script that reads these, unless there is one,
-/// which may have been edited.
-fn write_plots(played: &[Played], by: &[String], folder: &Path, quietly: bool) -> anyhow::Result<()> {
-    let plots = plots(played, by).map_err(bad_input)?;
-    let script = folder.join(SCRIPT);
-    let script = (!script.exists()).then_some((script, NOTEBOOK));
-    let files = plots.iter().map(|plot| (folder.join(&plot.file), plot.svg.as_str()));
-    for (path, text) in files.chain(script) {
-        fs::write(&path, text).map_err(|error| bad_input(format!("{}: {error}", path.display())))?;
-    }
-    if !quietly {
-        let folder = shown(folder.display());
-        println!("{} plots (plot_*.svg) written to {folder}, beside a script for pandas ({SCRIPT})", plots.len());
     }
     Ok(())
 }

@@ -59,8 +59,10 @@ mod session_time;
 mod sessions;
 mod site;
 mod splits;
+mod steps;
 mod stop;
 mod study;
+mod summing;
 mod supervisor;
 mod terminal;
 mod time;
@@ -99,6 +101,8 @@ enum Command {
     New(new::New),
     /// Re-simulate a recorded session and compare it tick by tick
     Replay(replay::Replay),
+    /// Tell a recorded session step by step, and what comes of it if one of them is another
+    Steps(Box<steps::Steps>),
     /// Lay two recorded sessions beside each other in rerun
     Compare(rerun::Compare),
     /// Write session logs as tables, or sum them up by condition
@@ -167,6 +171,7 @@ impl Command {
             | Self::Bridge(_)
             | Self::Dialog(_)
             | Self::Record(_)
+            | Self::Steps(_)
             | Self::Study(_)
             | Self::SelfTest(_) => {
                 rustix::process::umask(Mode::RWXG | Mode::RWXO);
@@ -227,6 +232,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Catalog(list) => list.run(),
         Command::New(new) => new.run(),
         Command::Replay(replay) => replay.run(),
+        Command::Steps(steps) => steps.run(),
         Command::Compare(compare) => compare.run(),
         Command::Export(export) => export.run(),
         Command::Eval(eval) => eval.run(),

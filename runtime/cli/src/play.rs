@@ -245,7 +245,19 @@ impl Play {
     ) -> Noted {
         let minds = self.minds.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
         let Listening {
-            drive, knows, ask, understanding, model: model_asked, names, voice, hide, wizard, seats, ..
+            drive,
+            knows,
+            ask,
+            politeness,
+            verbosity,
+            understanding,
+            model: model_asked,
+            names,
+            voice,
+            hide,
+            wizard,
+            seats,
+            ..
         } = &self.listening;
         let robots = robots.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
         let settings = [
@@ -253,10 +265,12 @@ impl Play {
             ("ask", ask.name().to_owned()),
             ("drive", drive.to_string()),
             ("knows", knows.to_string()),
+            ("politeness", politeness.to_string()),
             ("renderer", self.rendering.to_string()),
             ("robots", robots),
             ("timing", self.timing.with_agents(self.minds.len()).to_string()),
             ("understanding", understanding.to_string()),
+            ("verbosity", verbosity.to_string()),
         ];
         let asked = questionnaires.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(" ");
         let asked = (!asked.is_empty()).then_some(("questionnaires", asked));

@@ -2,7 +2,7 @@
 
 mod film;
 mod page;
-mod picture;
+pub mod picture;
 mod y4m;
 
 use std::{

@@ -86,6 +86,7 @@ impl Role {
         let names = listening.names.iter().flat_map(|name| ["--name".to_owned(), name.to_string()]);
         let robots = robots.iter().flat_map(|body| ["--robot".to_owned(), body.to_string()]);
         let robots = robots.chain(on_their_own.iter().map(|body| format!("--on-its-own={body}")));
+        let manner = [format!("--politeness={}", listening.politeness), format!("--verbosity={}", listening.verbosity)];
         let questionnaires = listening.questionnaires.iter().map(|name| format!("--questionnaire={name}"));
         let hosts = listening.hosts.iter().map(|host| format!("--host={host}"));
         let arguments = arguments.map(str::to_owned).chain(names).chain(robots).chain(questionnaires);
@@ -93,7 +94,7 @@ impl Role {
         let hidden = listening.hide.iter().map(|part| format!("--hide={part}"));
         let seats = (listening.seats > 0).then(|| format!("--seats={}", listening.seats));
         let arguments = arguments.chain(hosts).chain(framed_by).chain(hidden).chain(seats);
-        let arguments = arguments.chain(listening.voice.arguments()).chain(listening.wizard.arguments());
+        let arguments = arguments.chain(listening.voice.arguments()).chain(listening.wizard.arguments()).chain(manner);
         let (tls, language) = (listening.tls.arguments(), listening.language.arguments());
         Self { name: "dialog", arguments: arguments.map(OsString::from).chain(tls).chain(language).collect() }
     }

@@ -8,7 +8,7 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use cohabit_bus::message::Thing;
 use cohabit_cdf::{
-    Action, BodyId, Fluid, GoToTarget, PackFile, RoomId, Verb, WorldData, WorldPack, world_pack::template,
+    Action, BodyId, Fluid, GoToTarget, PackFile, RoomId, StateFlag, Verb, WorldData, WorldPack, world_pack::template,
 };
 use cohabit_engine::{SessionPlan, furnishings, report};
 use cohabit_render::{
@@ -114,6 +114,32 @@ fn of_two_basins_at_hand_it_is_the_one_that_runs() {
     }
     assert_eq!(world.object(tumbler).unwrap().fluid, Fluid::Water);
     assert_eq!(world.object(bathtub).unwrap().fluid, Fluid::None);
+}
+
+#[test]
+fn curtains_of_all_homes_are_drawn_and_drawn_aside() {
+    let homes = WorldData::layered(vec![WorldPack::builtin("homes").unwrap()]).unwrap();
+    let class = homes.catalog().find("Curtains").unwrap();
+    for plan in homes.packs()[0].plans() {
+        let text = format!(
+            r#"{{"scene": {{"layoutOverride": "{plan}", "roomLocation": ["Bathroom"], "required_objects": []}}, "task_goals": []}}"#
+        );
+        let mut world =
+            SessionPlan::new("curtains.json", &text, Arc::clone(homes.catalog()), 1).unwrap().build().unwrap();
+        let all: Vec<_> = world.objects().filter(|view| view.class == class).map(|view| view.id).collect();
+        assert!(!all.is_empty(), "{plan}");
+        let mut command = 0;
+        for object in all {
+            for (verb, is_open) in [(Verb::Close, false), (Verb::Open, true)] {
+                let there = Action::GoTo { target: GoToTarget::Object(object) };
+                for action in [there, Action::Interact { verb, object }] {
+                    command += 1;
+                    carry_out(&mut world, command, action);
+                }
+                assert_eq!(world.object(object).unwrap().flags.has(StateFlag::Opened), is_open, "{plan}");
+            }
+        }
+    }
 }
 
 fn plan_of_twenty() -> SessionPlan {

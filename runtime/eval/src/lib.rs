@@ -18,6 +18,7 @@ mod script;
 mod simulated;
 mod solve;
 mod source;
+pub mod steps;
 mod task;
 mod trace;
 mod trajectory;

@@ -15,7 +15,7 @@ use cohabit_world::{Input, Outcome, World};
 use crate::trace::Recording;
 
 /// The body that is spoken to.
-const BODY: BodyId = BodyId(0);
+pub(crate) const BODY: BodyId = BodyId(0);
 
 /// A session whose world waits for everybody: what follows from a tick is said and decided before the next.
 pub struct LockStep {
@@ -23,7 +23,10 @@ pub struct LockStep {
     conversation: Conversation,
     knowledge: Knowledge,
     agent: PlanFollower,
+    /// The newest number that a command was given here.
     commands: u64,
+    /// The newest command of the body.
+    newest: u64,
     waiting: Vec<Input>,
     noted: Noted,
     recording: Recording,
@@ -50,10 +53,17 @@ impl LockStep {
             knowledge,
             agent: PlanFollower::new(BODY.0),
             commands: 0,
+            newest: 0,
             waiting: Vec::new(),
             noted: Noted::default(),
             recording: Recording::default(),
         }
+    }
+
+    /// The same session where something happened already: with the mind that followed it, the newest command of the body, a number that no
+    /// command has reached, and what was recorded.
+    pub(crate) fn going_on(self, agent: PlanFollower, newest: u64, commands: u64, recording: Recording) -> Self {
+        Self { agent, newest, commands, recording, ..self }
     }
 
     /// Records all that follows in a new log.
@@ -97,6 +107,21 @@ impl LockStep {
     /// Commands the body, past dialog and agent.
     pub fn command(&mut self, action: Action) {
         self.act(0, action);
+    }
+
+    /// Gives a command that has a number already, of any body, past dialog and agent.
+    pub(crate) fn give(&mut self, input: Input, turn: u64) {
+        if input.body == BODY {
+            self.newest = input.command;
+        }
+        self.recording.turns.insert(input.command, turn);
+        self.waiting.push(input);
+    }
+
+    /// Whether the body has nothing to do, and no plan.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        let is_busy = self.world.body(BODY).is_some_and(|body| body.busy);
+        !is_busy && self.waiting.is_empty() && self.conversation.plan_under_way().is_none()
     }
 
     /// One tick, and all that is said and decided about it.
@@ -144,7 +169,7 @@ impl LockStep {
 
     fn end_command(&mut self, outcome: Outcome) -> Result<(), LogError> {
         let turn = self.recording.turns.remove(&outcome.command).unwrap_or(0);
-        if outcome.command == self.commands && turn != 0 {
+        if outcome.body == BODY && outcome.command == self.newest && turn != 0 {
             let mut deeds = Vec::new();
             self.agent.hear(&Heard::Outcome { status: outcome.status, detail: &outcome.detail }, &mut deeds);
             self.carry_out(deeds)?;
@@ -154,7 +179,7 @@ impl LockStep {
     }
 
     /// What the agent decided.
-    fn carry_out(&mut self, deeds: Vec<Deed>) -> Result<(), LogError> {
+    pub(crate) fn carry_out(&mut self, deeds: Vec<Deed>) -> Result<(), LogError> {
         for deed in deeds {
             match deed {
                 Deed::Act { turn, action } => self.act(turn, action),
@@ -207,6 +232,7 @@ impl LockStep {
 
     fn act(&mut self, turn: u64, action: Action) {
         self.commands += 1;
+        self.newest = self.commands;
         self.recording.turns.insert(self.commands, turn);
         self.waiting.push(Input { command: self.commands, body: BODY, action });
     }
@@ -218,7 +244,7 @@ pub(crate) fn truth(world: &World) -> Option<Known> {
 }
 
 /// Looks at the state of the world as it would be published.
-fn with_state<T>(world: &World, look: impl FnOnce(StateView<'_>) -> T) -> Option<T> {
+pub(crate) fn with_state<T>(world: &World, look: impl FnOnce(StateView<'_>) -> T) -> Option<T> {
     let parts = report::state(world);
     let mut words = vec![0_u64; parts.bytes().div_ceil(size_of::<u64>())];
     let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..parts.bytes()];

@@ -10,7 +10,7 @@ use cohabit_bus::{
 use cohabit_engine::{SessionPlan, report};
 use cohabit_generate::Observer;
 use cohabit_record::{
-    DialogEntry, EventEntry, InputEntry, LogError, LogWriter, SessionEntry, SessionFacts, TickEntry, entry::hex,
+    DialogEntry, EventEntry, InputEntry, Log, LogError, LogWriter, SessionEntry, SessionFacts, TickEntry, entry::hex,
 };
 use cohabit_world::{Input, Outcome, Report, World};
 
@@ -29,6 +29,22 @@ impl Recording {
         let entry = entry.with(&plan.catalog, &plan.layout);
         self.log = Some(LogWriter::create(path, &entry, wall_nanos())?);
         Ok(())
+    }
+
+    /// Records all that follows in a new log, behind what another log has up to a tick, and of its dialog so many entries.
+    pub fn after(path: &Path, entry: &SessionEntry, log: &Log, tick: u64, dialog: usize) -> Result<Self, LogError> {
+        let mut writer = LogWriter::create(path, entry, wall_nanos())?;
+        let mut copied = Copied { log, dialog: &log.dialog[..dialog], events: 0, said: 0, snapshots: 0 };
+        if let Some(first) = log.ticks.first() {
+            copied.up_to(first.tick.saturating_sub(1), first.wall_nanos, &mut writer)?;
+        }
+        let mut turns = BTreeMap::new();
+        for entry in log.ticks.iter().take_while(|entry| entry.tick <= tick) {
+            writer.tick(entry)?;
+            copied.up_to(entry.tick, entry.wall_nanos, &mut writer)?;
+            turns.extend(entry.inputs.iter().map(|input| (input.command, input.turn)));
+        }
+        Ok(Self { log: Some(writer), turns })
     }
 
     /// Something was said or planned.
@@ -72,6 +88,36 @@ impl Observer for Recording {
             if let Some(entry) = EventEntry::new(&Envelope { tick, ..Envelope::default() }, &message) {
                 log.event(&entry, wall_nanos())?;
             }
+        }
+        Ok(())
+    }
+}
+
+/// How far a log was copied, tick by tick.
+struct Copied<'a> {
+    log: &'a Log,
+    /// What of its dialog is copied.
+    dialog: &'a [DialogEntry],
+    events: usize,
+    said: usize,
+    snapshots: usize,
+}
+
+impl Copied<'_> {
+    /// Copies what was noted up to a tick, which began at that time.
+    fn up_to(&mut self, tick: u64, wall_nanos: u64, writer: &mut LogWriter) -> Result<(), LogError> {
+        let (log, dialog) = (self.log, self.dialog);
+        while let Some(snapshot) = log.snapshots.get(self.snapshots).filter(|one| one.tick <= tick) {
+            self.snapshots += 1;
+            writer.snapshot(snapshot, wall_nanos)?;
+        }
+        while let Some(entry) = log.events.get(self.events).filter(|entry| entry.tick <= tick) {
+            self.events += 1;
+            writer.event(entry, wall_nanos)?;
+        }
+        while let Some(entry) = dialog.get(self.said).filter(|entry| entry.tick <= tick) {
+            self.said += 1;
+            writer.dialog(entry, wall_nanos)?;
         }
         Ok(())
     }

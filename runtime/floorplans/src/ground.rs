@@ -10,6 +10,8 @@ const WALKWAY_M: f32 = 0.4;
 const SPARE_M: f32 = 0.003;
 /// The farthest that a walkway may end from what is used from it, m; a little less than what is checked.
 const REACH_M: f32 = 0.8;
+/// The same for what is worked over furniture, m.
+const REACH_OVER_M: f32 = 1.2;
 /// What lies lower does not block, m.
 const STEP_M: f32 = 0.07;
 /// What begins higher does not block, m.
@@ -23,6 +25,8 @@ pub struct Usable {
     pub block: Block,
     /// Where one has to stand before it; anywhere around it, if absent.
     pub front: Option<Turn>,
+    /// Whether a hand works it over what stands below.
+    pub is_over: bool,
 }
 
 /// The grid of a room.
@@ -169,7 +173,8 @@ impl Ground {
     fn cells_before(&self, usable: &Usable) -> Vec<usize> {
         let is_before =
             |cell: &usize| usable.front.is_none_or(|front| is_before(&usable.block, front, self.point(*cell)));
-        self.near(&usable.block, REACH_M).into_iter().filter(is_before).collect()
+        let within_m = if usable.is_over { REACH_OVER_M } else { REACH_M };
+        self.near(&usable.block, within_m).into_iter().filter(is_before).collect()
     }
 
     /// The middles of the cells that can be walked on, m, row by row from the south.
@@ -206,9 +211,18 @@ mod tests {
 
     #[test]
     fn what_is_used_has_a_walkway_before_it() {
-        let usable = |front| Usable { block: Block::between([0.1, 1.0], [0.6, 2.0], [0.0, 1.0]), front: Some(front) };
+        let block = Block::between([0.1, 1.0], [0.6, 2.0], [0.0, 1.0]);
+        let usable = |front| Usable { block, front: Some(front), is_over: false };
         assert!(takes([0.1, 1.0], [0.6, 2.0], &[usable(Turn::EAST)]));
         assert!(!takes([0.1, 1.0], [0.6, 2.0], &[usable(Turn::WEST)]));
+    }
+
+    #[test]
+    fn what_hangs_is_worked_over_what_stands_below() {
+        let block = Block::between([0.06, 1.0], [0.18, 2.0], [1.0, 2.5]);
+        let usable = |is_over| Usable { block, front: None, is_over };
+        assert!(takes([0.1, 0.06], [0.9, 2.94], &[usable(true)]));
+        assert!(!takes([0.1, 0.06], [0.9, 2.94], &[usable(false)]));
     }
 
     #[test]

@@ -192,6 +192,7 @@ fn class_of(options: &Options, size_m: [f32; 3], volume_m3: f32, color: [u8; 3])
         tint: options.tint.then(|| hex(color)),
         receptacle,
         handle_m: None,
+        as_built: Vec::new(),
         stands: options.stands.unwrap_or(usual),
     }
 }

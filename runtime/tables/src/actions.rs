@@ -21,7 +21,7 @@ const FIELDS: [Field; 16] = [
     Field::new("duration_s", Real, "s", "simulated time from there to its end; nothing if it had not ended"),
     Field::new("action", Text, "", "what to do; what held keys command is left out"),
     Field::new("object", Whole, "", "the object that it is about, by its number in the session"),
-    Field::new("place", Text, "", "where to go, if it is no object: a room, a viewpoint, or a point in metres"),
+    Field::new("place", Text, "", "where to go, if no object: room, viewpoint, or point in metres; or beside what"),
     Field::new("distance_m", Real, "m", "how far to move; negative is backwards"),
     Field::new("angle_deg", Real, "deg", "how far to turn to the left, or to look up"),
     Field::new("status", Text, "", "how it ended"),
@@ -89,6 +89,9 @@ fn told(action: &Action) -> Told {
         },
         Action::PickUp { object } => Told { object: Some(object.0), ..named("PickUp") },
         Action::Place { receptacle } => Told { object: Some(receptacle.0), ..named("Place") },
+        Action::PlaceBeside { receptacle, beside } => {
+            Told { object: Some(receptacle.0), place: Some(format!("beside {}", beside.0)), ..named("Place") }
+        }
         Action::Interact { verb, object } => Told { object: Some(object.0), ..named(&format!("{verb:?}")) },
         Action::Highlight { object } => Told { object: Some(object.0), ..named("Highlight") },
         Action::Stop => named("Stop"),

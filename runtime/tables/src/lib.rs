@@ -45,7 +45,7 @@ pub use columns::{Align, columns};
 pub use fit::{ConditionTest, Fit, Observation, RandomIntercept, Term};
 pub use interval::{mean_95, wilson_95};
 pub use mixed::{MixedError, MixedModel};
-pub use played::{Played, PlayedError};
+pub use played::{Deed, Played, PlayedError, Turn};
 pub use plot::{Plot, plots};
 pub use summary::{Effect, Group, Measure, Summary, SummaryError};
 pub use table::{Cell, Field, Kind, Table};

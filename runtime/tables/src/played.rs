@@ -57,15 +57,23 @@ pub enum PlayedError {
 
 /// Something that a person said, and what came of it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Turn {
+pub struct Turn {
+    /// Its number, from 1.
     pub number: u64,
+    /// The body that was spoken to.
     pub body: u32,
+    /// The number of the page at which it was said; 0 where that was not noted.
     pub person: u32,
+    /// The newest tick when it was said.
     pub tick: u64,
+    /// What was said.
     pub said: String,
+    /// What the robot said to it.
     pub replies: Vec<String>,
+    /// What the robot asked.
     pub questions: Vec<String>,
-    pub steps: usize,
+    /// The steps of the plans that were made of it.
+    pub plan: Vec<Action>,
     /// How the last of its plans ended.
     pub ended: Option<Status>,
     /// Received, understood, first motion, first changed frame, shown by a page: ns of one clock, 0 where it did not happen.
@@ -80,12 +88,16 @@ pub(crate) struct Turn {
 
 /// A command.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Deed {
+pub struct Deed {
+    /// Its number, unlike that of any other of the session.
     pub number: u64,
     /// The turn it belongs to; 0 is none.
     pub turn: u64,
+    /// The body that was told.
     pub body: u32,
+    /// What to do.
     pub action: Action,
+    /// The tick that took it in.
     pub began: u64,
     /// When it ended, how, and what was said of that.
     pub outcome: Option<(u64, Status, String)>,
@@ -163,6 +175,24 @@ impl Played {
         let none = |error: E| Movement { problem: Some(error.to_string()), ..Movement::default() };
         let movement = movement(&self.log).unwrap_or_else(none);
         Self { movement: Some(movement), ..self }
+    }
+
+    /// Its log.
+    #[must_use]
+    pub const fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// What people said, in order.
+    #[must_use]
+    pub fn turns(&self) -> &[Turn] {
+        &self.turns
+    }
+
+    /// All commands but those of held keys, in order.
+    #[must_use]
+    pub fn actions(&self) -> &[Deed] {
+        &self.actions
     }
 
     /// Its ticks.
@@ -306,7 +336,7 @@ fn note(turn: &mut Turn, entry: &DialogEntry) {
             let lines = if entry.kind == "Reply" { &mut turn.replies } else { &mut turn.questions };
             lines.push(entry.text.clone());
         }
-        "Plan" => turn.steps += entry.steps.len(),
+        "Plan" => turn.plan.extend_from_slice(&entry.steps),
         "PlanEnded" => turn.ended = entry.status,
         "Latency" => {
             for (known, stamp) in turn.stamps.iter_mut().zip(entry.stamps) {

@@ -138,7 +138,9 @@ impl Played {
         (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
     }
 
-    pub(crate) fn goals_met(&self) -> usize {
+    /// How many of its goals were met in the end.
+    #[must_use]
+    pub fn goals_met(&self) -> usize {
         self.goals.iter().filter(|goal| goal.met).count()
     }
 

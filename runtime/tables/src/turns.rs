@@ -66,7 +66,7 @@ fn row(played: &Played, turn: &Turn) -> Vec<Cell> {
         Cell::text(turn.replies.join("\n")),
         Cell::text(turn.questions.join("\n")),
         Cell::whole(turn.questions.len()),
-        Cell::whole(turn.steps),
+        Cell::whole(turn.plan.len()),
         Cell::whole(own().count()),
         Cell::whole(failed.count()),
         Cell::maybe(turn.ended, |status| Cell::text(format!("{status:?}"))),

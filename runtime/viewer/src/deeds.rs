@@ -239,6 +239,7 @@ fn told(action: &Action, objects: &[ObjectRecord]) -> String {
         Action::GoTo { target: GoToTarget::Point([x, y]) } => format!("GoTo {x:.1} {y:.1}"),
         Action::PickUp { object } => with("PickUp", *object),
         Action::Place { receptacle } => with("Place", *receptacle),
+        Action::PlaceBeside { receptacle, beside } => with(&format!("{} beside", with("Place", *receptacle)), *beside),
         Action::Interact { verb, object } => with(&format!("{verb:?}"), *object),
         Action::Highlight { object } => with("Highlight", *object),
         Action::Stop => "Stop".to_owned(),

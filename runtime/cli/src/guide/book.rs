@@ -34,6 +34,7 @@ pub const PAGES: &[Page] = pages![
     "wizard",
     "tables",
     "replay",
+    "steps",
     "rerun",
     "agents",
     "python",

@@ -61,6 +61,7 @@ impl Dialog {
             hosts: listening.hosts.clone(),
             knows: listening.knows,
             asking: listening.ask,
+            manner: listening.manner(),
             effort: listening.understanding,
             consulting: listening.model,
             interpreter: Endpoint::from_environment().map_err(bad_input)?.map(|model| Box::new(model) as _),

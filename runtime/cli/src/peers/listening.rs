@@ -2,7 +2,9 @@
 
 use std::net::IpAddr;
 
-use cohabit_dialog::{Asking, Consulting, Drivable, Effort, Hidden, HostName, Knows, Questionnaire};
+use cohabit_dialog::{
+    Asking, Consulting, Drivable, Effort, Hidden, HostName, Knows, Manner, Politeness, Questionnaire, Verbosity,
+};
 
 use super::body_name::BodyName;
 use crate::{failure::bad_input, page_language::PageLanguage, tls::Tls, voice::VoiceOptions, wizard::WizardOptions};
@@ -50,6 +52,12 @@ pub struct Listening {
     /// When the robot asks: `never`, when it is `unsure`, or `always`, and before it does anything
     #[arg(long, value_name = "WHEN", default_value_t)]
     pub ask: Asking,
+    /// How the robot words what it says: `plain`, or `polite`, which agrees with pleasure and is sorry when it refuses
+    #[arg(long, value_name = "MANNER", default_value_t)]
+    pub politeness: Politeness,
+    /// How much the robot says of what it is about to do: `full`, or `brief`, which is no more than that it does it
+    #[arg(long, value_name = "HOW-MUCH", default_value_t)]
+    pub verbosity: Verbosity,
     /// How much work goes into what people say: `full`, with a small language model that rewrites it in plain requests, some
     /// tenths of a second each time, or `fast`, without
     #[arg(long, value_name = "EFFORT", default_value_t)]
@@ -59,7 +67,7 @@ pub struct Listening {
     #[arg(long, value_name = "WHEN", default_value_t)]
     pub model: Consulting,
     /// What people are asked on the page, before they play or after: `sus` (System Usability Scale), `tlx` (NASA Task Load
-    /// Index), `tlx_weighted`, `godspeed`, `rosas`, `trust`, `ueq_s`, `pssuq`, or a file (TOML); as often as needed
+    /// Index), `tlx_weighted`, `rosas`, `trust`, `ueq_s`, `pssuq`, or a file (TOML); as often as needed
     #[arg(long = "questionnaire", value_name = "NAME|FILE")]
     pub questionnaires: Vec<String>,
     #[command(flatten)]
@@ -69,6 +77,11 @@ pub struct Listening {
 }
 
 impl Listening {
+    /// How the robot words what it says.
+    pub const fn manner(&self) -> Manner {
+        Manner { politeness: self.politeness, verbosity: self.verbosity }
+    }
+
     /// What people are asked.
     pub fn questionnaires(&self) -> anyhow::Result<Vec<Questionnaire>> {
         let found: Vec<_> = self

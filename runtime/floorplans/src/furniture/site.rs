@@ -129,7 +129,9 @@ impl<'a> Site<'a> {
     fn usable(&self, piece: &Placed) -> Option<Usable> {
         let class = self.catalog.class(piece.class);
         let block = piece.block().filter(|_| is_operable(class))?;
-        Some(Usable { block, front: is_used_from_its_front(class).then_some(piece.turn) })
+        let is_over = is_worked_over(class);
+        let has_front = is_used_from_its_front(class) && !is_over;
+        Some(Usable { block, front: has_front.then_some(piece.turn), is_over })
     }
 }
 
@@ -137,6 +139,11 @@ impl<'a> Site<'a> {
 fn is_operable(class: &ObjectClass) -> bool {
     use Property::{Openable, Powerable, Receptacle, Toggleable, Usable};
     [Openable, Powerable, Receptacle, Toggleable, Usable].into_iter().any(|property| class.has(property))
+}
+
+/// Whether a hand works it over what stands below: it hangs on a wall, and nothing is put into it.
+fn is_worked_over(class: &ObjectClass) -> bool {
+    class.stands == cohabit_cdf::catalog::Stands::OnWall && !class.has(Property::Receptacle)
 }
 
 /// Whether its doors, shelves or buttons are on one side: a table is used from all of them.
