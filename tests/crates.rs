@@ -40,6 +40,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-rerun", 4, &["re_sdk", "re_sdk_types", "arrow"]),
     ("cohabit-dialog", 4, &["tokio", "axum", "hyper", "hyper-util", "rustls", "tokio-rustls", "rcgen"]),
     ("cohabit-annotate", 5, &[]),
+    ("cohabit-edit", 5, &[]),
     ("cohabit-eval", 5, &[]),
     ("cohabit-mcp", 5, &[]),
     ("cohabit-study", 5, &[]),
@@ -49,7 +50,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
 ];
 
 /// Dependencies that others may name too: the log, pages, existing clients and those of tools speak JSON, tests report errors of all
-/// kinds, there are two programs, data sets are tables too, and studies and annotators have routes of their own.
+/// kinds, there are two programs, data sets are tables too, and studies, annotators and editors have routes of their own.
 const SHARED: &[(&str, &[&str])] = &[
     (
         "serde_json",
@@ -61,6 +62,7 @@ const SHARED: &[(&str, &[&str])] = &[
             "cohabit-benchmark",
             "cohabit-dialog",
             "cohabit-durable",
+            "cohabit-edit",
             "cohabit-eval",
             "cohabit-convert",
             "cohabit-demonstrate",
@@ -76,8 +78,8 @@ const SHARED: &[(&str, &[&str])] = &[
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
     ("parquet", &["cohabit-rerun"]),
-    ("axum", &["cohabit-annotate", "cohabit-study"]),
-    ("tokio", &["cohabit-annotate", "cohabit-study"]),
+    ("axum", &["cohabit-annotate", "cohabit-edit", "cohabit-study"]),
+    ("tokio", &["cohabit-annotate", "cohabit-edit", "cohabit-study"]),
 ];
 
 /// The most lines of a file. Tests do not count, nor does what is made while building.

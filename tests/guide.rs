@@ -78,6 +78,7 @@ pages! {
     deploy: "runtime/guide/src/deploy.md",
     development: "runtime/guide/src/development.md",
     dry_run: "runtime/guide/src/dry-run.md",
+    editors: "runtime/guide/src/editors.md",
     evaluation: "runtime/guide/src/evaluation.md",
     expert: "runtime/guide/src/expert.md",
     first_session: "runtime/guide/src/first-session.md",

@@ -64,6 +64,16 @@ impl Layout {
         Self::parse(id, &files(catalog))
     }
 
+    /// The plan `id` as `text` of its `file` has it, whatever the catalogue has of it; its bases are those that [`Self::find`] knows.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn draft(id: &str, file: &str, text: &str, catalog: &Catalog) -> Result<Self, LayoutError> {
+        let mut all = vec![(file, text)];
+        all.extend(files(catalog));
+        Self::parse(id, &all)
+    }
+
     /// The ids that [`Self::find`] knows, mirrored ones last.
     #[must_use]
     pub fn ids(catalog: &Catalog) -> Vec<String> {

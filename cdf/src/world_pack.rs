@@ -13,6 +13,7 @@
 //!
 //! All other files are of no meaning, and count for the hash alone.
 
+mod draft;
 mod error;
 mod ids;
 mod limits;
@@ -24,6 +25,7 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use serde::Deserialize;
 
+pub use draft::PlanDraft;
 pub use error::{PackError, PackErrors};
 pub use template::{NAME_RULE, files as template, is_name};
 pub use with_program::{builtin_files, names as builtin_names};

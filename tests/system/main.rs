@@ -13,6 +13,7 @@ mod convert;
 mod determinism;
 mod doctor;
 mod driving;
+mod edit;
 mod eval;
 mod export;
 mod faults;

@@ -186,8 +186,19 @@ fn copies(part: &Part) -> usize {
     repeated.saturating_mul(if part.mirror.is_some() { 2 } else { 1 })
 }
 
-/// A floor plan has rooms, and is of a size that is walked in.
+/// A floor plan is sound, and each of its rooms has a way into it.
 pub(super) fn check_plan(file: &str, plan: &Layout, catalog: &Catalog) -> Vec<PackError> {
+    let errors = check_shape(file, plan);
+    // Ways are looked for in plans alone that are sound else: the floor is a grid.
+    if !errors.is_empty() {
+        return errors;
+    }
+    let without = plan.rooms_without_a_way(catalog);
+    without.iter().map(|one| PackError::at(file, "room", one.to_string(), &one.remedy())).collect()
+}
+
+/// A floor plan has rooms, and is of a size that is walked in.
+pub(super) fn check_shape(file: &str, plan: &Layout) -> Vec<PackError> {
     let mut errors = Vec::new();
     let mut fault = |at: &str, reason: String, remedy: &str| errors.push(PackError::at(file, at, reason, remedy));
     if plan.rooms.is_empty() {
@@ -221,11 +232,6 @@ pub(super) fn check_plan(file: &str, plan: &Layout, catalog: &Catalog) -> Vec<Pa
         fault(&at, reason, &format!("above 0, and at most {LARGEST_SCALE}"));
     }
     errors.extend(plan.rooms.iter().flat_map(|room| check_finishes(file, room)));
-    // Ways are looked for in plans alone that are sound else: the floor is a grid.
-    if errors.is_empty() {
-        let without = plan.rooms_without_a_way(catalog);
-        errors.extend(without.iter().map(|one| PackError::at(file, "room", one.to_string(), &one.remedy())));
-    }
     errors
 }
 

@@ -29,6 +29,7 @@ mod completions;
 mod convert;
 mod demonstrate;
 mod doctor;
+mod edit;
 mod eval;
 mod export;
 mod failure;
@@ -95,6 +96,8 @@ enum Command {
     Play(Box<play::Play>),
     /// Say what is wrong in mission files, and where
     Check(check::Check),
+    /// Make a floor plan of a world pack, or a mission, in a page, by mouse or by keyboard
+    Edit(Box<edit::Edit>),
     /// List what missions and world packs may name: classes, devices, rooms, goals, floor plans, conditions and changes
     Catalog(catalog::List),
     /// Write files to begin with: a world pack
@@ -177,6 +180,7 @@ impl Command {
                 rustix::process::umask(Mode::RWXG | Mode::RWXO);
             }
             Self::Check(_)
+            | Self::Edit(_)
             | Self::Catalog(_)
             | Self::New(_)
             | Self::Replay(_)
@@ -229,6 +233,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
     match asked.command {
         Command::Play(play) => play.run(),
         Command::Check(check) => check.run(),
+        Command::Edit(edit) => edit.run(),
         Command::Catalog(list) => list.run(),
         Command::New(new) => new.run(),
         Command::Replay(replay) => replay.run(),

@@ -1,6 +1,9 @@
 //! Where the sites of this program are served, such as that of a study; sessions have options of their own.
 
-use std::net::{IpAddr, SocketAddr, TcpListener};
+use std::{
+    ffi::OsString,
+    net::{IpAddr, SocketAddr, TcpListener},
+};
 
 use anyhow::Context as _;
 use cohabit_dialog::{HostName, Identity};
@@ -26,6 +29,14 @@ impl SiteOptions {
         self.tls.identity(self.listen)
     }
 
+    /// The same as arguments of another process, which may run in another folder.
+    pub fn arguments(&self) -> Vec<OsString> {
+        let listen = ["--listen".into(), self.listen.to_string().into()];
+        // Each page has a port of its own: a name is one at any.
+        let hosts = self.hosts.iter().map(|host| format!("--host={}", without_port(&host.to_string())).into());
+        listen.into_iter().chain(hosts).chain(self.tls.arguments()).collect()
+    }
+
     /// Listens for who asks for `what`, such as "the study", at a port, and says what has to be known of its encryption.
     pub fn listen(
         &self,
@@ -41,6 +52,14 @@ impl SiteOptions {
     }
 }
 
+/// A host's name alone.
+fn without_port(host: &str) -> &str {
+    match host.rsplit_once(':') {
+        Some((name, port)) if port.parse::<u16>().is_ok() => name,
+        _ => host,
+    }
+}
+
 /// Listens at an address for who asks for `what`, such as "the guide"; gives the address with the port that it has.
 pub fn listen(what: &str, asked: SocketAddr) -> anyhow::Result<(TcpListener, SocketAddr)> {
     let listener = TcpListener::bind(asked).map_err(|error| {
@@ -50,4 +69,18 @@ pub fn listen(what: &str, asked: SocketAddr) -> anyhow::Result<(TcpListener, Soc
     })?;
     let listening = listener.local_addr().with_context(|| format!("the address of {what}"))?;
     Ok((listener, listening))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_hosts_at_any_port() {
+        for (host, name) in
+            [("lab", "lab"), ("lab.example:8443", "lab.example"), ("[::1]", "[::1]"), ("[::1]:80", "[::1]")]
+        {
+            assert_eq!(without_port(host), name, "{host}");
+        }
+    }
 }

@@ -5,8 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use cohabit_cdf::{PackId, WorldData};
-use cohabit_engine::read_world_folder;
+use cohabit_cdf::{PackId, WorldData, WorldPack};
+use cohabit_engine::{read_world_folder, world_folder_files};
 
 use crate::failure::bad_input;
 
@@ -34,16 +34,7 @@ impl WorldPacks {
         if self.world_folders.is_empty() {
             return Ok(WorldData::builtin());
         }
-        let (mut packs, mut errors) = (Vec::new(), Vec::new());
-        for folder in &self.world_folders {
-            match read_world_folder(folder) {
-                Ok(pack) => packs.push(pack),
-                Err(error) => errors.push(error.to_string()),
-            }
-        }
-        if !errors.is_empty() {
-            return Err(bad_input(errors.join("\n")));
-        }
+        let packs = read_all(&self.world_folders)?;
         for (pack, hash) in packs.iter().zip(&self.world_hashes) {
             if pack.id().digest != *hash {
                 // A process that is started again must not play on in another world.
@@ -55,6 +46,28 @@ impl WorldPacks {
             }
         }
         WorldData::layered(packs).map_err(bad_input)
+    }
+
+    /// Reads them all with the pack in `folder` as the last one, but for one of its files, whose path from there is `path`.
+    pub fn read_but(&self, folder: &Path, path: &str) -> anyhow::Result<WorldData> {
+        let mut packs = read_all(&self.others(folder))?;
+        let mut files = world_folder_files(folder).map_err(bad_input)?;
+        files.retain(|file| file.path != path);
+        packs.push(WorldPack::parse(&folder.to_string_lossy(), files).map_err(bad_input)?);
+        WorldData::layered(packs).map_err(bad_input)
+    }
+
+    /// The same with the pack in `folder` as the last one, which may be among them already.
+    pub fn with_once(&self, folder: &Path) -> Self {
+        let mut world_folders = self.others(folder);
+        world_folders.push(folder.to_owned());
+        Self { world_folders, world_hashes: Vec::new() }
+    }
+
+    /// All but the pack in `folder`.
+    fn others(&self, folder: &Path) -> Vec<PathBuf> {
+        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        self.world_folders.iter().filter(|other| real(other) != real(folder)).cloned().collect()
     }
 
     /// The same with one more, the last.
@@ -83,4 +96,16 @@ impl WorldPacks {
             argument
         })
     }
+}
+
+/// Reads the packs in these folders; where some cannot be read, says of each why.
+fn read_all(folders: &[PathBuf]) -> anyhow::Result<Vec<WorldPack>> {
+    let (mut packs, mut errors) = (Vec::new(), Vec::new());
+    for folder in folders {
+        match read_world_folder(folder) {
+            Ok(pack) => packs.push(pack),
+            Err(error) => errors.push(error.to_string()),
+        }
+    }
+    if errors.is_empty() { Ok(packs) } else { Err(bad_input(errors.join("\n"))) }
 }

@@ -30,7 +30,7 @@ impl Service {
         let words: Vec<&str> = call.arguments.iter().map(String::as_str).take(2).collect();
         let is_site = match words.as_slice() {
             ["agent", ..] => return Some(Self::Peer),
-            ["play", ..] | ["study", "run"] => true,
+            ["play" | "edit", ..] | ["study", "run"] => true,
             ["guide", ..] => !call.has("--text"),
             ["annotate", ..] => !call.has("--agreement") && !call.has("--export"),
             ["replay", ..] => call.has("--page") || call.has("--branch"),
@@ -94,6 +94,7 @@ mod tests {
             ("cohabit play --help", None),
             ("cohabit study run study.toml --folder data", Some(Service::Site)),
             ("cohabit study check study.toml", None),
+            ("cohabit edit my-lab/layouts/Workshop.toml", Some(Service::Site)),
             ("cohabit guide", Some(Service::Site)),
             ("cohabit guide --text study", None),
             ("cohabit annotate demonstrations/", Some(Service::Site)),

@@ -23,6 +23,7 @@ pub const PAGES: &[Page] = pages![
     "missions",
     "goals",
     "worlds",
+    "editors",
     "vision",
     "voice",
     "together",
