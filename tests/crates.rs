@@ -42,6 +42,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
     ("cohabit-annotate", 5, &[]),
     ("cohabit-edit", 5, &[]),
     ("cohabit-eval", 5, &[]),
+    ("cohabit-host", 5, &[]),
     ("cohabit-mcp", 5, &[]),
     ("cohabit-study", 5, &[]),
     ("cohabit-vision", 5, &[]),
@@ -50,7 +51,7 @@ const LEVELS: &[(&str, u8, &[&str])] = &[
 ];
 
 /// Dependencies that others may name too: the log, pages, existing clients and those of tools speak JSON, tests report errors of all
-/// kinds, there are two programs, data sets are tables too, and studies, annotators and editors have routes of their own.
+/// kinds, there are two programs, data sets are tables too, and studies, annotators, editors and hosts have routes of their own.
 const SHARED: &[(&str, &[&str])] = &[
     (
         "serde_json",
@@ -67,6 +68,7 @@ const SHARED: &[(&str, &[&str])] = &[
             "cohabit-convert",
             "cohabit-demonstrate",
             "cohabit-generate",
+            "cohabit-host",
             "cohabit-houses",
             "cohabit-mcp",
             "cohabit-study",
@@ -78,7 +80,7 @@ const SHARED: &[(&str, &[&str])] = &[
     ("anyhow", &["cohabit-rerun", "cohabit-tests"]),
     ("clap", &["cohabit-rerun"]),
     ("parquet", &["cohabit-rerun"]),
-    ("axum", &["cohabit-annotate", "cohabit-edit", "cohabit-study"]),
+    ("axum", &["cohabit-annotate", "cohabit-edit", "cohabit-host", "cohabit-study"]),
     ("tokio", &["cohabit-annotate", "cohabit-edit", "cohabit-study"]),
 ];
 

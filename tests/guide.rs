@@ -83,6 +83,7 @@ pages! {
     expert: "runtime/guide/src/expert.md",
     first_session: "runtime/guide/src/first-session.md",
     goals: "runtime/guide/src/goals.md",
+    host: "runtime/guide/src/host.md",
     how_it_works: "runtime/guide/src/how-it-works.md",
     language_model: "runtime/guide/src/language-model.md",
     latency: "runtime/guide/src/latency.md",

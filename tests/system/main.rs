@@ -19,6 +19,7 @@ mod export;
 mod faults;
 mod generate;
 mod guide;
+mod host;
 mod https;
 mod interpreter;
 mod languages;

@@ -23,6 +23,7 @@ mod arena;
 mod benchmark;
 mod branch;
 mod build;
+mod capacity;
 mod catalog;
 mod check;
 mod completions;
@@ -37,6 +38,7 @@ mod gallery;
 mod generate;
 mod generate_world;
 mod guide;
+mod host;
 mod import_house;
 mod import_model;
 mod man;
@@ -55,6 +57,7 @@ mod readable_logs;
 mod rendering;
 mod replay;
 mod rerun;
+mod scratch;
 mod self_test;
 mod session_time;
 mod sessions;
@@ -130,6 +133,8 @@ enum Command {
     Convert(convert::Convert),
     /// Have people annotate a data set of demonstrations on a page: instructions, questions and answers
     Annotate(annotate::Annotate),
+    /// Host many sessions on this machine as its load allows, with one page of all; or measure how many it carries
+    Host(Box<host::Host>),
     /// Write a mission as a planning problem (PDDL), or check a plan for it against the world
     Pddl(pddl::PddlFiles),
     /// Run a study: participants, conditions, consent, sessions, data
@@ -169,6 +174,7 @@ impl Command {
     fn keep_files_private(&self) {
         match self {
             Self::Play(_)
+            | Self::Host(_)
             | Self::Sim(_)
             | Self::Agent(_)
             | Self::Bridge(_)
@@ -250,6 +256,7 @@ fn run(asked: Cohabit) -> anyhow::Result<()> {
         Command::Vision(vision) => vision.run(),
         Command::Convert(convert) => convert.run(),
         Command::Annotate(annotate) => annotate.run(),
+        Command::Host(host) => host.run(),
         Command::Pddl(pddl) => pddl.run(),
         Command::Study(study) => study.run(),
         Command::Guide(guide) => guide.run(),

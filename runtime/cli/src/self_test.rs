@@ -1,7 +1,6 @@
 //! `cohabit self-test`: plays a mission on this machine from end to end, and says what works and what is missing.
 
 mod python;
-mod scratch;
 mod trials;
 
 use std::{

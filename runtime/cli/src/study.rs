@@ -36,6 +36,7 @@ use cohabit_study::{
 use cohabit_tables::tables;
 
 use crate::{
+    capacity::SessionCount,
     doctor::ensure_room,
     failure::{bad_input, environment},
     readable_logs::ReadLogs,
@@ -46,7 +47,7 @@ use crate::{
 };
 pub use data::{is_left_out, is_of_practice, participants_of};
 use plan::Plan;
-use ports::{PortRange, Ports};
+pub use ports::{PortRange, Ports, Taken};
 use program::ThisProgram;
 use report::Report;
 use sessions::{Served, Sessions};
@@ -110,9 +111,10 @@ struct Run {
     /// at a time; any that are free, if absent
     #[arg(long, value_name = "FIRST-LAST")]
     session_ports: Option<PortRange>,
-    /// How many sessions are played at a time, while other participants wait; one for two cores, if absent
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..))]
-    sessions: Option<u16>,
+    /// How many sessions are played at a time, while other participants wait: a number, `quick` for as many as the machine carries by
+    /// what one takes, or `full` for as many as it was seen to carry, which takes minutes where it was not measured yet
+    #[arg(long, value_name = "COUNT|quick|full", default_value_t = SessionCount::Quick)]
+    sessions: SessionCount,
 }
 
 #[derive(clap::Args)]
@@ -259,7 +261,8 @@ impl Run {
         if let Some(problem) = no_model(&study, Endpoint::from_environment().map_err(bad_input)?.is_some()) {
             return Err(environment(problem));
         }
-        let (most_sessions, identity) = (self.most_sessions()?, self.site.identity()?);
+        self.check_ports()?;
+        let identity = self.site.identity()?;
         ensure_room()?;
         tell_kept_too_long(&study, &self.folder);
         let mut files = study.files.clone();
@@ -267,6 +270,7 @@ impl Run {
         let folder = Folder::begin(&self.folder, &files).map_err(refused)?;
         let study_file = Folder::study_file(folder.path());
         let (listener, listening) = self.site.listen("the study", self.port, identity.as_ref())?;
+        let most_sessions = self.most_sessions(&stop);
         let title = study.title.clone();
         let page = match &study.page_texts_file {
             Some(file) => format!("--page-texts={file}"),
@@ -308,16 +312,20 @@ impl Run {
         Ok(())
     }
 
-    fn most_sessions(&self) -> anyhow::Result<usize> {
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        let most = self.sessions.map_or((cores / 2).max(1), usize::from);
-        match &self.session_ports {
-            Some(ports) if ports.count() < most => Err(bad_input(format!(
+    /// Says whether each session has a port, where it is known how many there are.
+    fn check_ports(&self) -> anyhow::Result<()> {
+        match (self.sessions, &self.session_ports) {
+            (SessionCount::Count(most), Some(ports)) if ports.count() < usize::from(most) => Err(bad_input(format!(
                 "`--session-ports {ports}` are {} for {most} sessions at a time: give more, or fewer `--sessions`",
                 ports.count()
             ))),
-            _ => Ok(most),
+            _ => Ok(()),
         }
+    }
+
+    /// How many sessions are played at a time: no more than have ports.
+    fn most_sessions(&self, stop: &AtomicBool) -> usize {
+        self.sessions.find(stop).min(self.session_ports.as_ref().map_or(usize::MAX, PortRange::count))
     }
 }
 

@@ -32,6 +32,7 @@ pub const PAGES: &[Page] = pages![
     "dry-run",
     "questionnaires",
     "deploy",
+    "host",
     "wizard",
     "tables",
     "replay",

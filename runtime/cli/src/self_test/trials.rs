@@ -21,8 +21,7 @@ use cohabit_record::Log;
 use cohabit_render::{CpuRenderer, MeshLibrary};
 use cohabit_world::World;
 
-use super::scratch::Scratch;
-use crate::doctor;
+use crate::{doctor, scratch::Scratch};
 
 /// The built-in mission that is played, and what is said in it.
 const MISSION: &str = "cold_soda";
@@ -49,7 +48,7 @@ pub struct Recorded {
 
 /// Plays a mission in lock-step, by the robot that does what is said, and records it.
 pub fn play_mission(catalog: &Arc<Catalog>) -> anyhow::Result<Passed<Recorded>> {
-    let folder = Scratch::new()?;
+    let folder = Scratch::new("self-test")?;
     let script = SCRIPT.lines().map(Line::utterance).collect();
     let task = Task { id: MISSION.to_owned(), family: None, cdf: text()?.to_owned(), preparation: Vec::new(), script };
     let settings = Settings { seed: SEED, record: Some(folder.path().to_owned()), ..Settings::default() };

@@ -1,4 +1,4 @@
-//! A folder for what a self-test writes.
+//! A folder for what a command writes and does not keep.
 
 use std::{
     env, fs, io,
@@ -11,9 +11,9 @@ use std::{
 pub struct Scratch(PathBuf);
 
 impl Scratch {
-    /// A new one; none if something has its name already, which another user may have put there.
-    pub fn new() -> io::Result<Self> {
-        let folder = env::temp_dir().join(format!("cohabit-self-test-{}", process::id()));
+    /// A new one for that purpose; none if something has its name already, which another user may have put there.
+    pub fn new(purpose: &str) -> io::Result<Self> {
+        let folder = env::temp_dir().join(format!("cohabit-{purpose}-{}", process::id()));
         let made = fs::DirBuilder::new().mode(0o700).create(&folder);
         let named = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", folder.display()));
         made.map_err(named)?;
