@@ -238,9 +238,9 @@ fn tidies(mission: usize) {
         println!("  {ended:?}");
     }
     let gaps = done.windows(2).map(|two| two[1].tick - two[0].tick).max().unwrap_or(0);
-    // When this was written, of 8 or 9 things all were tidied but one, with no failure, in 7 rooms.
+    // When this was written, of 8 or 9 things all were tidied but one, with no failure, in 7 rooms. A cabinet that is built open is left open.
     assert!(made >= 7, "{made} things were messed up: {:#?}", played.outcomes);
-    assert!(tidied + 2 >= made, "{tidied} of {made} tidied: {:#?}", played.outcomes);
+    assert!(tidied + 3 >= made, "{tidied} of {made} tidied: {:#?}", played.outcomes);
     assert!(failed.len() <= 1 && done.len() >= 30, "{} failed, {} done", failed.len(), done.len());
     assert!(rooms >= 6 && gaps < 60 * TICKS_PER_SECOND, "{rooms} rooms, {gaps} ticks without anything done");
 }

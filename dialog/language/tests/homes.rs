@@ -861,3 +861,19 @@ fn things_of_a_home_are_for_something() {
         ],
     );
 }
+
+#[test]
+fn milk_is_the_carton_of_it_rather_than_a_glass_that_has_some() {
+    let marks = [
+        "plan House_Family Kitchen",
+        "add MilkCarton_01 on Kitchen_Island",
+        "add Tumbler on Kitchen_Island",
+        "Tumbler milk",
+    ];
+    means(&marks, &["put the milk on the dining table"], "take MilkCarton_01, put Dining_Table");
+    means(
+        &["plan House_Family Kitchen", "add Teapot on Kitchen_Island"],
+        &["put the teapot in the teapot"],
+        "! There is nothing in the teapot to pour.",
+    );
+}

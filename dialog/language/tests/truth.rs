@@ -234,7 +234,7 @@ fn what_something_stands_in_is_not_full_for_that() {
         "if the fridge is full, close the microwave",
         "? I cannot tell whether the fridge is full. Shall I do it all the same?",
     );
-    check(&["CoffeeMug_Boss_1 coffee"], "is the red mug full?", "= Yes, the red mug is full.");
+    check(&["CoffeeMug_Boss_1 coffee"], "is the red mug full?", "= Yes, there is coffee in the red mug.");
 }
 
 #[test]

@@ -171,7 +171,9 @@ fn a_person_takes_part_in_a_browser() {
         .unwrap();
     let address = format!("http://{}{}", server.host, observer.as_str().unwrap());
     let mut observed = browser.open(&address, 1280, 800).unwrap();
-    observed.wait_until("document.querySelector('#notes li')?.textContent.includes('took her time')").unwrap();
+    let has_note =
+        "[...document.querySelectorAll('#notes li')].some((one) => one.textContent.includes('took her time'))";
+    observed.wait_until(has_note).unwrap();
     let buttons = "[...document.querySelectorAll('button, input')].filter((one) => one.checkVisibility()).length";
     assert_eq!(observed.evaluate(buttons).unwrap(), json!(0));
     accessibility::check(&mut observed, "the observers' page");

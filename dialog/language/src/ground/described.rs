@@ -54,6 +54,12 @@ impl<'a> Ground<'a> {
             ground::keep_if_any(&mut left, |object| by_nature(object) || is_plain(object));
             ground::keep_if_any(&mut left, |object| object.color.name().eq_ignore_ascii_case(color));
         }
+        // `the milk` is the carton of it, rather than a glass that has some.
+        if phrase.fluid.is_some() {
+            ground::keep_if_any(&mut left, |object| {
+                phrase.fluid == Some(object.fluid) && phrase.naming(object.class).is_some()
+            });
+        }
         if left.is_empty() {
             left = self.plain_ones(phrase, &base);
         }

@@ -11,7 +11,7 @@ use crate::{
         settle::{Goal, Settled},
     },
     read::phrase::{Phrase, Place},
-    words::{intent::Intent, lexicon::Preposition},
+    words::{intent::Intent, lexicon::Preposition, prose},
 };
 
 /// How far the edge of a table may be from the middle of what is then beside it, m.
@@ -75,6 +75,9 @@ impl Planner<'_> {
         let origin = self.taken_from(object).filter(|_| !is_beside && !settled.is_back);
         let want = Want { classes: &open, origin, ..Want::place(settled.intent, affordances, Some(object)) };
         let target = self.find_one(phrase, &want, Some(goal.role))?;
+        if !is_beside && target == object {
+            return Err(Fault::Cannot(prose::sentence(&format!("I cannot put {} into itself", self.the(object)))));
+        }
         if !is_beside {
             return Ok((target, self.named_beside(phrase, target, object, settled.intent)));
         }

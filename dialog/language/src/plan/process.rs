@@ -85,7 +85,8 @@ impl Planner<'_> {
             let is_put_in = process.is_some_and(|process| process.steps.contains(&Act::Place));
             let fluid = settled.fluid.or_else(|| process.and_then(|process| process.fluid));
             let is_named = settled.goal.is_some() || settled.tool.is_some();
-            if let Some(state) = self.is_so_already(settled.intent, fluid, object).filter(|_| !(is_named && is_put_in)) {
+            if let Some(state) = self.is_so_already(settled.intent, fluid, object).filter(|_| !(is_named && is_put_in))
+            {
                 let the = self.the(object);
                 self.notes.push(format!("{the} {} {state} already", prose::is(&the)));
                 self.focus.mention(object);
@@ -107,7 +108,9 @@ impl Planner<'_> {
             Intent::Clean if !known.has(StateFlag::Dirty) && known.fluid == Fluid::None => Some("clean"),
             Intent::Dry if !known.has(StateFlag::Wet) => Some("dry"),
             Intent::Fold if known.has(StateFlag::Folded) => Some("folded"),
-            Intent::Fill if known.fluid != Fluid::None && fluid.is_none_or(|fluid| fluid == known.fluid) => Some("full"),
+            Intent::Fill if known.fluid != Fluid::None && fluid.is_none_or(|fluid| fluid == known.fluid) => {
+                Some("full")
+            }
             _ => None,
         }
     }

@@ -171,6 +171,12 @@ impl Conversation<'_> {
         if !more.is_empty() && pending.is_some_and(Pending::offers_several) && is_bare_yes() {
             return None;
         }
+        // `no, leave that. I need the hammer`: who names something else does not want the search to go on.
+        let offers_one = matches!(pending, Some(Pending::Which { candidates, .. }) if candidates.len() == 1);
+        let is_else = more.iter().any(|part| self.names_anything(&token::words(part)));
+        if offers_one && is_else && self.small(first).contains(&Small::No) {
+            return None;
+        }
         let mut then = Context { pending: pending.cloned(), later: Vec::new(), ..context.clone() };
         let understanding = match pending? {
             Pending::Lab { words: before, at } => {

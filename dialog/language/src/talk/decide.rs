@@ -40,6 +40,8 @@ const TO_GUESS: f32 = 0.3;
 const TO_STOP: f32 = 0.6;
 /// What is proposed beside the likeliest is at least so likely, of that.
 const RIVAL: f32 = 0.25;
+/// How many times likelier a plan is than the first part of it, for all of it to be done, and no more than that part asked about.
+const MUCH_LIKELIER: f32 = 2.0;
 /// How many plans are proposed at most.
 const MOST_PROPOSED: usize = 3;
 /// Below this, what is done is said to be what the robot thinks.
@@ -403,6 +405,12 @@ fn begun(ways: &[Way]) -> Option<(Way, Option<Left>)> {
         let all: f32 = longer.iter().map(|(one, ..)| one.probability).sum();
         let begun = Way { probability: way.probability + all, ..way.clone() };
         let (likeliest, guess, more) = longer.into_iter().next()?;
+        // What goes on is rather meant than what only begins.
+        let goes_on =
+            likeliest.probability >= MUCH_LIKELIER * way.probability && !more.iter().any(|one| one.contains('?'));
+        if goes_on && begun.probability >= likeliest.least() {
+            return Some((Way { probability: begun.probability, ..likeliest.clone() }, None));
+        }
         // To look around as well does no harm.
         if likeliest.only_looks() && begun.probability >= begun.least() {
             return Some((Way { probability: begun.probability, ..likeliest.clone() }, None));

@@ -67,8 +67,7 @@ impl Conversation<'_> {
         };
         let source = Source::new(self.lexicon, &wording.words, &[], "");
         let asks_to_go = (0..wording.words.len()).any(|at| self.asks_to_go(&wording.words[at..]));
-        let only_walks =
-            |one: &Hypothesis| !asks_to_go && one.way.only_goes() && self.unnamed(&one.text, &source) > 0;
+        let only_walks = |one: &Hypothesis| !asks_to_go && one.way.only_goes() && self.unnamed(&one.text, &source) > 0;
         let of = |one: &Hypothesis| {
             let walk = if only_walks(one) { ONLY_WALKS } else { 1.0 };
             let faithful = if one.is_unfaithful { UNFAITHFUL } else { 1.0 };

@@ -9,7 +9,9 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-use cohabit_cdf::{Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId, Status, catalog::Speech, state::StateFlag};
+use cohabit_cdf::{
+    Action, Catalog, Color, Fluid, GoToTarget, ObjectId, RoomId, Status, catalog::Speech, state::StateFlag,
+};
 use cohabit_language::{Asking, Context, Known, KnownGoal, KnownObject, KnownRobot, Language, Step, Understanding};
 
 /// `id | name | words | properties | colour | receptacle`: `-` none, `on`, `in` (enclosed), `key:CLASS`.
@@ -131,6 +133,7 @@ fn fields(line: &str) -> Vec<&str> {
 }
 
 pub fn catalog() -> Arc<Catalog> {
+    let builtin = Catalog::builtin();
     let mut text = String::new();
     for line in CLASSES.lines().filter(|line| !line.is_empty()) {
         let field = fields(line);
@@ -146,6 +149,10 @@ pub fn catalog() -> Arc<Catalog> {
             field[0], field[1], field[4]
         )
         .unwrap();
+        let class = builtin.find(field[0]).map(|class| builtin.class(class));
+        let built: Vec<String> =
+            class.iter().flat_map(|class| &class.as_built).map(|flag| format!("{flag:?}")).collect();
+        writeln!(text, "as_built = {built:?}").unwrap();
         if field[5] != "-" {
             let keys = field[5].strip_prefix("key:").map(|key| format!("keys = [{key:?}]\n")).unwrap_or_default();
             write!(
@@ -159,7 +166,7 @@ pub fn catalog() -> Arc<Catalog> {
     }
     let model = "[[model]]\nid = \"box\"\n[[model.part]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\n";
     let catalog = Catalog::parse(&[("objects.toml", &text)], &[("models.toml", model)]).unwrap();
-    Arc::new(catalog.with_table_of(&Catalog::builtin()))
+    Arc::new(catalog.with_table_of(&builtin))
 }
 
 /// The office, changed by `marks` such as `FridgeLower_02_1 open`, `held Bowl_01_1`, `at Lab1 10 8`.
