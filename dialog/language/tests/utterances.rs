@@ -140,7 +140,7 @@ fn other_sets_are_measured_too() {
 
 #[test]
 fn most_of_what_was_looked_at_is_understood() {
-    check("seen", include_str!("utterances/seen.txt"), true, [101, 102]);
+    check("seen", include_str!("utterances/seen.txt"), true, [100, 102]);
     check("manners", include_str!("utterances/manners.txt"), true, [47, 48]);
     check("spoken", include_str!("utterances/spoken.txt"), true, [18, 18]);
 }
@@ -171,5 +171,5 @@ fn most_of_what_people_say_is_understood() {
 #[test]
 fn most_of_what_writers_say_is_understood() {
     check("writer w", include_str!("utterances/writers/w.txt"), false, [74, 78]);
-    check("writer ck", include_str!("utterances/writers/ck.txt"), false, [50, 51]);
+    check("writer ck", include_str!("utterances/writers/ck.txt"), false, [48, 50]);
 }
