@@ -401,7 +401,7 @@ fn what_is_put_somewhere_is_the_same_whether_it_is_picked_up_first() {
 /// What a rewriter makes of one utterance: a thing is to be found, or taken.
 fn found_or_taken(said: &str, _: &[(bool, String)], _: &str) -> Vec<(String, f32)> {
     let ways = [("find the hammer", 0.5), ("pick up the hammer", 0.45)];
-    let is_it = said == "whack the whacker down yonder where the boss sits";
+    let is_it = said == "whack the whacker down yonder where the chief sits";
     ways.iter().filter(|_| is_it).map(|(text, share)| ((*text).to_owned(), *share)).collect()
 }
 
@@ -409,7 +409,7 @@ fn found_or_taken(said: &str, _: &[(bool, String)], _: &str) -> Vec<(String, f32
 fn what_is_taken_has_to_be_found_first() {
     let mut robot = Robot::new(&[]);
     robot.language = robot.language.with_rewriter(found_or_taken);
-    let (done, said) = robot.say("whack the whacker down yonder where the boss sits", 80);
+    let (done, said) = robot.say("whack the whacker down yonder where the chief sits", 80);
     assert!(said[0].ends_with("Shall I also pick up the hammer?"), "{said:?}");
     assert_eq!(done.last().map(String::as_str), Some("go Hammer_1"), "{done:?} {said:?}");
     assert_eq!(said.last().map(String::as_str), Some("? Shall I also pick up the hammer?"), "{said:?}");
