@@ -6,14 +6,12 @@
 """
 
 import argparse
-import time
 from pathlib import Path
 
 import torch
 import torch.nn.functional as F
 from safetensors.torch import load_file, save_file
 from torch import nn
-from torch.utils.data import DataLoader
 
 import corpus
 import fit
@@ -27,6 +25,7 @@ def main():
     options.add_argument("--share", type=float, default=0.85, help="how often one of these is drawn, and not one of all others")
     options.add_argument("--minutes", type=float, default=30, help="how long to train")
     options.add_argument("--rate", type=float, default=1e-3, help="the highest rate of learning")
+    options.add_argument("--warm-up", type=int, default=10, help="how many steps it takes to get to that rate")
     options.add_argument("--rank", type=int, default=16, help="the rank of the changes")
     options.add_argument("--seed", type=int, default=fit.SEED, help="what is drawn by chance")
     options.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu", help="cpu or cuda")
@@ -45,7 +44,7 @@ def main():
     model.to(given.device)
     if given.minutes:
         train(model, changes, given)
-    save_file({name: one.contiguous().cpu() for name, one in tensors(changes).items()}, given.out)
+    keep(changes, given.out)
     given.out.chmod(0o644)
     model.eval()
     for change in changes.values():
@@ -103,29 +102,15 @@ def take(changes, adapter):
 
 
 def train(model, changes, given):
-    model.train()
     trained = [one for change in changes.values() for one in (change.up, change.down)]
     optimizer = torch.optim.AdamW(trained, weight_decay=0.0, betas=(0.9, 0.98))
-    on_gpu = given.device != "cpu"
-    drawn = fit.Batches(given.seed, fit.GPU_ROWS if on_gpu else fit.ROWS, given.to, given.share)
-    begun, losses = time.monotonic(), []
-    for step, parts in enumerate(DataLoader(drawn, batch_size=None, num_workers=6 if on_gpu else 0), 1):
-        done = (time.monotonic() - begun) / (60 * given.minutes)
-        if done >= 1:
-            break
-        for group in optimizer.param_groups:
-            group["lr"] = given.rate * min(1, step / 10) * max(0.02, 1 - done)
-        with torch.autocast(given.device, torch.bfloat16):
-            loss = model.loss(*(part.to(given.device) for part in parts))
-        optimizer.zero_grad()
-        loss.backward()
-        nn.utils.clip_grad_norm_(trained, 1.0)
-        optimizer.step()
-        losses = [*losses[-49:], loss.detach()]
-        if step % 10 == 0:
-            print(f"step {step}, {100 * done:.0f} %, loss {sum(losses).item() / len(losses):.3f}", flush=True)
+    for step in fit.steps(model, optimizer, fit.drawn(given, given.to, given.share), given):
         if step % 50 == 0:
-            save_file({name: one.contiguous().cpu() for name, one in tensors(changes).items()}, given.out)
+            keep(changes, given.out)
+
+
+def keep(changes, file):
+    save_file({name: one.contiguous().cpu() for name, one in tensors(changes).items()}, file)
 
 
 if __name__ == "__main__":

@@ -353,20 +353,38 @@ class Batches(IterableDataset):
 
 
 def train(model, given):
-    model.train()
     for layer in model.layers:
         layer.dropout = given.dropout
     trained = [one for one in model.parameters() if one.requires_grad]
     optimizer = torch.optim.AdamW(trained, weight_decay=0.01, betas=(0.9, 0.98), fused=True)
+    batches = drawn(given, given.often, 0.5)
+    for step in steps(model, optimizer, batches, given, lambda done: set_rounded(model, True) if done >= given.rounded_after else None):
+        if step % 1000 == 0:
+            print(f"step {step}, {measured(model, unseen())}", flush=True)
+            if given.keep:
+                torch.save(model.state_dict(), given.keep)
+    if given.keep:
+        torch.save(model.state_dict(), given.keep)
+
+
+def drawn(given, often, share):
+    """Batches without end, in which writers are drawn that often, and not all others."""
     on_gpu = given.device != "cpu"
-    batches = DataLoader(Batches(given.seed, GPU_ROWS if on_gpu else ROWS, given.often), batch_size=None, num_workers=6 if on_gpu else 0)
+    batches = Batches(given.seed, GPU_ROWS if on_gpu else ROWS, often, share)
+    return DataLoader(batches, batch_size=None, num_workers=6 if on_gpu else 0)
+
+
+def steps(model, optimizer, batches, given, before=lambda done: None):
+    """Learns until the time is over, at a rate that falls with the share of it that is done; gives the number of each step that was taken.
+    `before` is told that share ahead of each."""
+    model.train()
+    trained = [one for group in optimizer.param_groups for one in group["params"]]
     begun, losses = time.monotonic(), []
     for step, parts in enumerate(batches, 1):
         done = (time.monotonic() - begun) / (60 * given.minutes)
         if done >= 1:
-            break
-        if done >= given.rounded_after:
-            set_rounded(model, True)
+            return
+        before(done)
         for group in optimizer.param_groups:
             group["lr"] = given.rate * min(1, step / given.warm_up) * max(0.02, 1 - done)
         with torch.autocast(given.device, torch.bfloat16):
@@ -378,12 +396,7 @@ def train(model, given):
         losses = [*losses[-99:], loss.detach()]
         if step % 20 == 0:
             print(f"step {step}, {100 * done:.0f} %, loss {sum(losses).item() / len(losses):.3f}", flush=True)
-        if step % 1000 == 0:
-            print(f"step {step}, {measured(model, unseen())}", flush=True)
-            if given.keep:
-                torch.save(model.state_dict(), given.keep)
-    if given.keep:
-        torch.save(model.state_dict(), given.keep)
+        yield step
 
 
 def set_rounded(model, is_rounded):

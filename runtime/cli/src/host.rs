@@ -25,7 +25,7 @@ use crate::{
     mission_file::MissionFile,
     play::Play,
     sessions,
-    site::SiteOptions,
+    site::{Ending, SiteOptions},
     stop,
     study::{PortRange, Ports},
     terminal::{print, shown, shown_json},
@@ -238,15 +238,6 @@ fn shares(threads: Option<usize>) -> String {
         Some(_) => "two threads",
     };
     format!("Each session draws with {drawn}; its ticks go first, and no session is preferred to another")
-}
-
-/// Ends all when it is dropped: without their page the sessions cannot be looked after.
-struct Ending<'a>(&'a AtomicBool);
-
-impl Drop for Ending<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::{
     ffi::OsString,
     net::{IpAddr, SocketAddr, TcpListener},
+    sync::atomic::{AtomicBool, Ordering},
 };
 
 use anyhow::Context as _;
@@ -49,6 +50,15 @@ impl SiteOptions {
             println!("{notice}");
         }
         Ok(listened)
+    }
+}
+
+/// Ends what a site is of when it is dropped: without its pages nobody looks after that any longer.
+pub struct Ending<'a>(pub &'a AtomicBool);
+
+impl Drop for Ending<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
     }
 }
 

@@ -40,7 +40,7 @@ use crate::{
     doctor::ensure_room,
     failure::{bad_input, environment},
     readable_logs::ReadLogs,
-    site::SiteOptions,
+    site::{Ending, SiteOptions},
     stop,
     terminal::{print, shown},
     world::WorldPacks,
@@ -326,15 +326,6 @@ impl Run {
     /// How many sessions are played at a time: no more than have ports.
     fn most_sessions(&self, stop: &AtomicBool) -> usize {
         self.sessions.find(stop).min(self.session_ports.as_ref().map_or(usize::MAX, PortRange::count))
-    }
-}
-
-/// Ends the study when it is dropped: without its pages it cannot go on.
-struct Ending<'a>(&'a AtomicBool);
-
-impl Drop for Ending<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
     }
 }
 

@@ -21,7 +21,8 @@ pub(crate) struct Hypothesis {
     pub(crate) edit: Edit,
     pub(crate) outcome: Outcome,
     pub(crate) is_unfaithful: bool,
-    /// How many things it names of which nobody spoke.
+    /// How many things were said that it does not name, and how many it names of which nobody spoke.
+    pub(crate) unnamed: usize,
     pub(crate) unspoken: usize,
 }
 
@@ -95,7 +96,7 @@ impl Conversation<'_> {
         let is = |holds: bool| f32::from(u8::from(holds));
         let few = |count: usize| count.min(3) as f32;
         let log = |share: f32| share.max(f32::MIN_POSITIVE).ln().max(FAINTEST);
-        let of = |Hypothesis { way, text, probability, edit, outcome, unspoken, .. }: &Hypothesis| {
+        let of = |Hypothesis { way, text, probability, edit, outcome, unnamed, unspoken, .. }: &Hypothesis| {
             let asks =
                 matches!(&way.understanding, Understanding::Question { kind, .. } if *kind != Clarification::Reference);
             let values = [
@@ -108,7 +109,7 @@ impl Conversation<'_> {
                 is(*outcome == Outcome::InVain),
                 is(*outcome == Outcome::Astray),
                 is(asks),
-                few(self.unnamed(text, source)),
+                few(*unnamed),
                 few(*unspoken),
                 few(self.invented(text, source)),
                 covered(text, source),

@@ -5,7 +5,7 @@ use cohabit_cdf::{Action, Color, Fluid, GoToTarget, ObjectId, Property, StateFla
 use crate::{
     context::Context,
     known::{Known, KnownObject, imagine},
-    talk::{conversation::Conversation, evidence::Hypothesis, source::Source, way::Way, wording::Wording},
+    talk::{conversation::Conversation, evidence::Hypothesis, way::Way, wording::Wording},
     understanding::Step,
     words::intent::Intent,
 };
@@ -65,9 +65,8 @@ impl Conversation<'_> {
             };
             !says_it && hypotheses.iter().any(names_it)
         };
-        let source = Source::new(self.lexicon, &wording.words, &[], "");
         let asks_to_go = (0..wording.words.len()).any(|at| self.asks_to_go(&wording.words[at..]));
-        let only_walks = |one: &Hypothesis| !asks_to_go && one.way.only_goes() && self.unnamed(&one.text, &source) > 0;
+        let only_walks = |one: &Hypothesis| !asks_to_go && one.way.only_goes() && one.unnamed > 0;
         let of = |one: &Hypothesis| {
             let walk = if only_walks(one) { ONLY_WALKS } else { 1.0 };
             let faithful = if one.is_unfaithful { UNFAITHFUL } else { 1.0 };

@@ -97,6 +97,7 @@ impl Conversation<'_> {
                     None => {
                         let is_unfaithful = self.is_unfaithful(&text, &source);
                         let outcome = self.becomes(&way);
+                        let unnamed = self.unnamed(&text, &source);
                         let unspoken = self.unspoken(&text, &source);
                         n_best.hypotheses.push(Hypothesis {
                             way,
@@ -105,6 +106,7 @@ impl Conversation<'_> {
                             edit,
                             outcome,
                             is_unfaithful,
+                            unnamed,
                             unspoken,
                         });
                     }
